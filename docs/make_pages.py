@@ -85,7 +85,7 @@ TOPICS: Final[Mapping[str, tuple[str, str, tuple[str, ...]]]] = {
 """Pages of public names: the title, a sentence, and the rooms; the empty name is the package."""
 FIRST: Final = (
     *("read", "count", "branch", "match", "vertices", "decompose"),
-    *("follow", "prove", "loops", "draw", "view", "actuate", "check"),
+    *("follow", "prove", "loops", "draw", "view", "actuate", "tolerance", "check"),
 )
 """What the first page begins with, in the order in which a program uses it."""
 

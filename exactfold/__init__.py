@@ -8,6 +8,7 @@
     vertices   which vertices fold with their letters, and what to change at the others
     flat       the flat-folded states of a sheet, with their layers, or why there is none
     actuate    torques that drive a sheet along one way and no other
+    tolerance  how far vertices may move before the ways or their letters change
     follow     the motion along a way, in space
     prove      a motion proved, with its first contact
     loops      all motions that come back to the flat sheet, proved

@@ -34,6 +34,7 @@ from exactfold.app.verbs.moving import loops as loops
 from exactfold.app.verbs.moving import prove as prove
 from exactfold.app.verbs.showing import draw as draw
 from exactfold.app.verbs.showing import view as view
+from exactfold.app.verbs.tolerating import tolerance as tolerance
 from exactfold.branches import Branch as Branch
 from exactfold.branches import BranchCount as BranchCount
 from exactfold.design import Actuation as Actuation

@@ -340,6 +340,7 @@ LABELLED = {"mathematics", "theorem", "panels", "branch", "conventions"}
 """Pages on which definitions and theorems have labels."""
 
 
+@pytest.mark.slow
 def test_what_docstrings_cite_is_there() -> None:
     """Pages exist; places have a label, or a heading where the page gives no labels."""
     cited, pages = script("make_pages")["cited"], {page.stem for page in PAGES}
@@ -472,6 +473,7 @@ def check_gallery(name: str) -> Any:
     return card
 
 
+@pytest.mark.slow
 def test_the_lines_of_the_first_page_make_the_viewer_on_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

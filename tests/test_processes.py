@@ -33,6 +33,7 @@ class Fatal:
         return os._exit, (3,)
 
 
+@pytest.mark.slow
 def test_results_as_they_end_and_in_order() -> None:
     before = threading.active_count()
     found = []

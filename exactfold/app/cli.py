@@ -300,6 +300,35 @@ def actuate(**options: Any) -> int:
     return Driven(**options).answer()
 
 
+@app.command(cls=Command, rich_help_panel="Fold")
+@taking("tolerances.ToleranceOptions")
+def tolerance(**options: Any) -> int:
+    """Say how far vertices may move before the ways to fold or their letters change, with proof.
+
+    All sheets whose vertices move by less than the radius, each within a disk,
+    have the same ways with the same letters, or the way that is named. For rigid
+    panels with loops that must close, the answer says how sensitive each loop is.
+    """
+    from exactfold.app.commands.tolerance import Asked
+
+    return Asked(**options).answer()
+
+
+@app.command(cls=Command, rich_help_panel="Fold")
+@taking("tolerances.DesignOptions")
+def design(**options: Any) -> int:
+    """Move inner vertices until the sheet folds as wanted, and prove what is claimed of it.
+
+    --letters asks for a way with these mountains and valleys. --maximise raises the
+    tolerance, or the margin of torques for one way. The new sheet has short exact
+    decimals. If a wish is not reached, the closest sheet is kept, with the reason;
+    so it is after Ctrl-C.
+    """
+    from exactfold.app.commands.design import Asked
+
+    return Asked(**options).answer()
+
+
 @app.command(cls=Command, rich_help_panel="Studies")
 @taking("studies.StudyOptions")
 def study(**options: Any) -> int:

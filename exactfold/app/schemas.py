@@ -72,6 +72,8 @@ DOCUMENTS: Final = {
         "design.actuation.result:ActuationDocument",
         "design.actuation.panels.result:PanelActuationDocument",
     ),
+    "tolerance": ("exactfold tolerance --json", "design.tolerance.result:ToleranceDocument"),
+    "design": ("exactfold design --json", "design.moving.result:DesignDocument"),
     "assignments": (
         "exactfold assignments --json",
         "design.circles.assignment_list:AssignmentsDocument",

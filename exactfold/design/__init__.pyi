@@ -24,6 +24,8 @@ from exactfold.design.circles.assignment_list import Circle as Circle
 from exactfold.design.circles.assignment_list import Crossing as Crossing
 from exactfold.design.circles.certificate import assignments_certificate as assignments_certificate
 from exactfold.design.circles.circles import all_assignments as all_assignments
+from exactfold.design.moving.order import designed as designed
+from exactfold.design.moving.result import Designed as Designed
 from exactfold.design.panels.match import PanelMatch as PanelMatch
 from exactfold.design.panels.match import match_panels as match_panels
 from exactfold.design.panels.panel_assignments import PanelAssignments as PanelAssignments
@@ -32,3 +34,7 @@ from exactfold.design.panels.panel_assignments import panel_assignments as panel
 from exactfold.design.panels.refutation import PanelRefutation as PanelRefutation
 from exactfold.design.refutations.forcing import Forcing as Forcing
 from exactfold.design.refutations.refutation import Refutation as Refutation
+from exactfold.design.tolerance.closing import Closing as Closing
+from exactfold.design.tolerance.result import Tolerance as Tolerance
+from exactfold.design.tolerance.tolerance import tolerance_of_branches as tolerance_of_branches
+from exactfold.design.tolerance.tolerance import tolerance_of_panels as tolerance_of_panels

@@ -80,6 +80,7 @@ def fold_flat(
     clock = Clock(limit)
     opened = open_sheet(sheet)
     pattern = panels(opened.sheet) if isinstance(opened.sheet, CreasePattern) else opened.sheet
+    pattern.check_disk("folding flat")
     chosen, used = _letters(opened, pattern.folds, letters)
     found = _found(pattern, chosen, used, most, clock, progress)
     doubt, near = "", None  # what was not read from a file is exact

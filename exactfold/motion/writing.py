@@ -1,4 +1,4 @@
-"""Writes a motion as FOLD with frames, glTF, meshes or a table; or the sheet at its end alone."""
+"""Writes a motion as FOLD with frames, glTF, meshes, a table or a robot; or its end alone."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from exactfold.branches.values.export import BranchExport
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import shown
 from exactfold.interop.fold_frames import NOISE, MotionFrame, motion_document
+from exactfold.interop.mechanisms import mjcf_text, urdf_texts
 from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text, stl_bytes
 from exactfold.motion.curves.events import RETURN
 from exactfold.motion.curves.in_motion import SheetInMotion
@@ -25,7 +26,7 @@ from exactfold.pattern.writing.fold_writing import (
     write_text,
 )
 
-ENDINGS = (".fold", ".glb", ".gltf", ".obj", ".stl", ".csv")
+ENDINGS = (".fold", ".glb", ".gltf", ".obj", ".stl", ".csv", ".mjcf", ".urdf")
 
 
 def write_motion(
@@ -37,9 +38,11 @@ def write_motion(
     (`motion_document`). ".glb" and ".gltf" are glTF 2.0: one file with an animation of the frames,
     for Blender and three.js. ".obj" and ".stl" give a file for each frame: NAME_0000.obj,
     NAME_0001.obj, and so on; STL needs trimesh (`pip install 'exactfold[meshes]'`). ".csv" is a
-    table of the fold angles in degrees, with a row for each frame (`angles_csv`). FOLD files keep
-    panels as they are; in meshes panels are cut into triangles. `title` is the title of the
-    pattern. See docs/folding.md.
+    table of the fold angles in degrees, with a row for each frame (`angles_csv`). ".mjcf" and
+    ".urdf" are the sheet as a mechanism: a model for MuJoCo that starts on the motion
+    (`mjcf_text`), and a robot with the meshes of its panels in files NAME_0000.obj and so on
+    (`urdf_texts`). FOLD files keep panels as they are; in meshes panels are cut into triangles.
+    `title` is the title of the pattern. See docs/folding.md.
 
     Raises `UsageError` for any other ending, `PackageMissingError`, `UnwritableFileError`.
 
@@ -65,8 +68,17 @@ def write_motion(
     if ending == ".csv":
         write_text(target, angles_csv(motion))
         return (target,)
-    triangles = np.array(triangles_of(motion.pattern), dtype=np.intp)
     name = title or "sheet"
+    if ending == ".mjcf":
+        write_text(target, mjcf_text(motion.pattern, motion.angles, motion.times, name))
+        return (target,)
+    if ending == ".urdf":
+        text, meshes = urdf_texts(motion.pattern, target.stem, name)
+        for beside, mesh in meshes.items():
+            write_text(target.with_name(beside), mesh)
+        write_text(target, text)
+        return (target, *map(target.with_name, meshes))
+    triangles = np.array(triangles_of(motion.pattern), dtype=np.intp)
     if ending in (".obj", ".stl"):
         files = [
             target.with_name(f"{target.stem}_{k:04}{ending}") for k in range(len(motion.times))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
+from typing import Final
 
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
 from exactfold._support.plurals import counted
@@ -15,7 +16,7 @@ from exactfold.panels.result import Part
 from exactfold.panels.spaces.cones import cone_motions, is_one_family
 from exactfold.panels.spaces.found import FoundComponent, found_components
 from exactfold.panels.spaces.freedom import most_first_order, most_freedom
-from exactfold.panels.spaces.kernel import Rows, entry, first_order
+from exactfold.panels.spaces.kernel import Rows, entry, first_order, number
 from exactfold.panels.spaces.regular import (
     Balls,
     Forms,
@@ -27,12 +28,15 @@ from exactfold.panels.spaces.regular import (
 )
 from exactfold.panels.spaces.splitting import Splitting
 from exactfold.panels.spaces.subspaces import Leaf, independent_parts, reduced
+from exactfold.panels.vertex.holes import close_always
 from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_STEPS = 6_000_000
 MOST_REDUCTION = 3_000_000
 MOST_FOUND = 20_000_000
+_MANY: Final = 64
+"""With more conditions of holes, too many forms are left where splitting ends; it ends early."""
 
 
 def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = UNLIMITED) -> Part:
@@ -60,8 +64,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
     except TooManyModesError as error:
         if (tree := by_tree(moving, size)) is not None:
             return tree
-        where = f"the part of {counted(len(moving), 'vertex')} with vertex"
-        reason = f"{where} {next(iter(moving))}: {error}"
+        reason = f"{part_text(moving)}: {error}"
         components, _ = _found(pattern, moving, small, left, clock)
         return _partial(pattern, moving, (rows, size), (small, left), components, reason, clock)
 
@@ -94,6 +97,8 @@ def by_tree(moving: Mapping[int, Star], size: int) -> Part | None:
 
     `size` is the dimension of the first-order motions.
     """
+    if _has_holes(moving):
+        return None
     try:
         counts = tree_components(moving)
     except TooManyModesError:
@@ -128,7 +133,8 @@ def _complete(
     """
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
-    search = Splitting(moving, MOST_STEPS, clock.share(2 / 3))
+    many = sum(star.hole is not None for star in moving.values()) > _MANY
+    search = Splitting(moving, MOST_STEPS, clock.share(1 / 8 if many else 2 / 3))
     leaves = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}
@@ -149,7 +155,7 @@ def _complete(
         not clock.passed and _extends(pattern, moving, leaf, motions)
         for leaf, motions in zip(spaces, zeros, strict=True)
     ]
-    alone = len(moving) == 1 or all(
+    alone = (len(moving) == 1 and not _has_holes(moving)) or all(
         not clock.passed and _is_regular(moving, rows, size, leaf) for leaf in spaces
     )
     if len(spaces) == 1:
@@ -197,8 +203,8 @@ def _checked_components(
         motions.append(cone_motions(moving, rows, size, cones) if len(cones) > 1 else [None])
         if not motions[-1]:
             raise TooManyModesError(
-                f"on a space of dimension {size} the second-order conditions of vertices "
-                f"{', '.join(map(str, cones))} remain, and exactfold could not solve them together"
+                f"on a space of dimension {size} the second-order conditions of "
+                f"{_named(moving, cones)} remain, and exactfold could not solve them together"
             )
     components = list(product(*motions))
     for each in components if len(components) > 1 else ():
@@ -206,7 +212,8 @@ def _checked_components(
         for (rows, size), zero in zip(parts, each, strict=True):
             cones = [v for v in leaf.vertices if set(moving[v].folds) & set(rows)]
             if zero is None:
-                zero = cone_motions(moving, rows, size, cones)[0] if cones else point(rows, size)
+                zero = next(iter(cone_motions(moving, rows, size, cones)), {})
+                zero = zero if cones else point(rows, size)
             w = {**w, **zero}
         if not all(other is leaf or outside(w, other) for other in leaves):
             raise TooManyModesError(
@@ -245,7 +252,9 @@ def _partial(
     them folds.
     """
     folds = any(one.folds for one in components)
-    modes = [] if folds else folding_modes(pattern, moving, *smaller, MOST_FOUND, clock)
+    modes = []
+    if not folds and not _has_holes(moving):
+        modes = folding_modes(pattern, moving, *smaller, MOST_FOUND, clock)
     return Part(
         tuple(moving),
         "subspaces",
@@ -270,10 +279,32 @@ def _without_space(
         None,
         None,
         most=most_first_order(moving),
-        modes=tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
-        reason=f"the first-order motions of {counted(len(moving), 'vertex')} round vertex "
-        f"{next(iter(moving))} are not known: {reason}",
+        modes=() if _has_holes(moving) else tuple(folding_modes(pattern, moving, {}, 0, 0, clock)),
+        reason=f"the first-order motions of {part_text(moving)} are not known: {reason}",
     )
+
+
+def _has_holes(moving: Mapping[int, Star]) -> bool:
+    return any(star.hole is not None for star in moving.values())
+
+
+def part_text(moving: Mapping[int, Star]) -> str:
+    """A part of a sheet in words: the number of its vertices and of its holes."""
+    inner = [v for v, star in moving.items() if star.hole is None]
+    holes = {star.hole.number for star in moving.values() if star.hole is not None}
+    counts = [counted(len(inner), "vertex")] if inner else []
+    counts += [counted(len(holes), "hole")] if holes else []
+    first = f"vertex {inner[0]}" if inner else f"hole {min(holes)}"
+    return f"the part of {' and '.join(counts)} with {first}"
+
+
+def _named(moving: Mapping[int, Star], some: Sequence[int]) -> str:
+    """Vertices and holes in words."""
+    inner = [str(v) for v in some if moving[v].hole is None]
+    holes = sorted({hole.number for v in some if (hole := moving[v].hole) is not None})
+    texts = [f"vertices {', '.join(inner)}"] if inner else []
+    texts += [f"holes {', '.join(map(str, holes))}"] if holes else []
+    return " and ".join(texts)
 
 
 def _still(moving: Mapping[int, Star], active: Iterable[Edge]) -> tuple[Edge, ...]:
@@ -300,7 +331,8 @@ def _extends(
     parts = independent_parts(_entries(leaf), leaf.size, moving)
     for (rows, size), zero in zip(parts, zeros or [None] * len(parts), strict=True):
         active = [star.vertex for star in moving.values() if set(star.folds) & set(rows)]
-        if len(active) == 1 and size == len(rows) - 2:
+        holes = any(moving[v].hole is not None for v in active)
+        if len(active) == 1 and size == len(rows) - 2 and not holes:
             continue
         cones = [v for v in active if v in leaf.vertices]
         w = zero
@@ -311,7 +343,11 @@ def _extends(
             continue
         if cones:
             return False
-        if size != 1 or folding_mode(pattern, moving, rows) is None:
+        if holes and size == 1:
+            if close_always(moving, {edge: number(row[0]) for edge, row in rows.items()}):
+                continue
+            return False
+        if holes or size != 1 or folding_mode(pattern, moving, rows) is None:
             return False
     return True
 

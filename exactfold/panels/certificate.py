@@ -24,8 +24,9 @@ from exactfold.panels.isolated import IsolatedWays
 from exactfold.panels.modes.elementary import ModeSearch, Support
 from exactfold.panels.modes.extension import FOREST, Loops, extension
 from exactfold.panels.result import Counts, Decomposition, Mode, Part
+from exactfold.panels.vertex.holes import conditions
 from exactfold.panels.vertex.local import LocalMode, local_modes
-from exactfold.panels.vertex.stars import Star, stars
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_entries import panels_document
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -53,7 +54,7 @@ def certificate_of_panels(result: Decomposition) -> Document:
             f"({result.reason})"
         )
     pattern = result.pattern
-    moving = stars(pattern, result.held)
+    moving = conditions(pattern, result.held)
     listed: dict[tuple[Edge, ...], list[Mode]] = {}
     for mode in result.modes:
         listed.setdefault(tuple(sorted(mode.assignment)), []).append(mode)

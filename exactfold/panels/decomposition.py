@@ -11,18 +11,18 @@ from typing import Final
 import networkx as nx
 
 from exactfold._support.clock import QUICK, UNLIMITED, Clock
-from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import TooManyModesError
-from exactfold.panels.by_spaces import by_spaces, by_tree
+from exactfold.panels.by_spaces import by_spaces, by_tree, part_text
 from exactfold.panels.modes.densities import UndecidedDensityError
 from exactfold.panels.modes.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.panels.modes.extension import Extension, Loops, extend_together, extension
 from exactfold.panels.result import Decomposition, Mode, Part, product
 from exactfold.panels.spaces.freedom import most_first_order, most_freedom
 from exactfold.panels.spaces.kernel import first_order
-from exactfold.panels.vertex.stars import Star, stars
+from exactfold.panels.vertex.holes import conditions, free_folds
+from exactfold.panels.vertex.stars import Star, incidence
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 MOST_SUPPORTS = 20_000
@@ -41,13 +41,13 @@ def decompose(
 ) -> Decomposition:
     """Every component of the motions of a sheet of rigid panels, to second order and truly.
 
-    First the folds that cannot fold in any real motion are found (`stars`); this works at any size.
+    First the folds that cannot fold in any real motion are found (`conditions`), at any size.
     The remaining folds fall into independent parts. For a part whose vertices have at most four
     folds, the structure theorem gives all components (docs/panels.md, Structure theorem). For other
-    parts, linear spaces are split vertex by vertex (`leaves`), up to a limit of work. If it fails,
-    components are found one by one (`found_components`), and if none of these is known to fold,
-    modes that fold are searched for (`folding_modes`). The lowest-order term of a true motion is a
-    second-order motion, so a sheet without second-order motions is rigid.
+    parts, and those with holes, linear spaces are split vertex by vertex (`leaves`), up to a limit
+    of work. If it fails, components are found one by one (`found_components`), and if none of these
+    is known to fold, modes that fold are searched for (`folding_modes`). The lowest-order term of a
+    true motion is a second-order motion, so a sheet without second-order motions is rigid.
 
     The smallest parts come first. If the clock has passed, the search ends, and the parts that are
     not known yet have this as their `reason`.
@@ -67,9 +67,8 @@ def decompose(
     """
     start = time.perf_counter()
     held = frozenset(flat)
-    moving = stars(pattern, held)
-    interior = set(pattern.interior)
-    free = tuple(e for e in pattern.folds if not interior.intersection(e) and e not in held)
+    moving = conditions(pattern, held)
+    free = tuple(e for e in free_folds(pattern) if e not in held)
     active = {edge for star in moving.values() for edge in star.folds}
     rest = tuple(e for e in pattern.folds if e not in active and e not in free)
     groups = groups_of(moving)
@@ -131,26 +130,26 @@ def _modes_count(parts: Iterable[Part]) -> int | None:
 
 
 def groups_of(moving: Mapping[int, Star]) -> list[tuple[int, ...]]:
-    """The connected groups of vertices that are joined by folds that may fold.
+    """The connected groups of vertices, and holes, that are joined by folds that may fold.
 
     They are sorted by their smallest vertex.
     """
     graph = nx.Graph()
     graph.add_nodes_from(moving)
-    for v, star in moving.items():
-        graph.add_edges_from((v, u) for edge in star.folds for u in edge if u != v and u in moving)
+    for first, *others in incidence(moving).values():
+        graph.add_edges_from((first, other) for other in others)
     return sorted(tuple(sorted(group)) for group in nx.connected_components(graph))
 
 
 def _part(pattern: PanelPattern, moving: Mapping[int, Star], listed: int, clock: Clock) -> Part:
     vertices = tuple(moving)
-    few = all(len(star.folds) <= 4 for star in moving.values())
+    few = all(len(star.folds) <= 4 and star.hole is None for star in moving.values())
     try:
         if few:
             return _by_modes(pattern, moving, listed, clock)
         return by_spaces(pattern, moving, clock)
     except (TooManyModesError, UndecidedDensityError) as error:
-        where = f"the part of {counted(len(vertices), 'vertex')} with vertex {vertices[0]}"
+        where = part_text(moving)
         theory = "modes" if few else "subspaces"
         reason = f"{where}: {error}"
         try:

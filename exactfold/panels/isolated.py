@@ -78,12 +78,12 @@ def isolated_ways(
     be flat on a way, and where a way may be linear in the half-angle tangents. Raises
     `TooManyModesError` if the clock has passed.
     """
-    full = [v for v, star in stars.items() if len(star.folds) > 2]
+    full = [v for v, star in stars.items() if star.has_form]
     folds = {edge for star in stars.values() for edge in star.folds}
     rational = all(isinstance(x, fmpq) for row in rows.values() for x in row)
     if not rational or size != len(full) + 1 or len(full) > ISOLATED_FORMS:
         return None
-    if size != len(folds) - len(stars) - len(full):
+    if size != len(folds) - sum(star.conditions for star in stars.values()):
         return None
     if sum(_needs_root(stars[v]) for v in full) < _FEWEST_ROOTS:
         return None
@@ -139,7 +139,7 @@ def _is_first(box: IsolatingBox) -> bool:
 
 def _needs_root(star: Star) -> bool:
     """Whether a vertex has a square root in its local modes, or more than four folds."""
-    if len(star.folds) > 4:
+    if len(star.folds) > 4 or star.hole is not None:
         return True
     discriminant: Number = 1
     for k, d in enumerate(star.directions):
@@ -181,6 +181,8 @@ def _may_be_taken(stars: Mapping[int, Star], leaf: Leaf) -> bool:
     if any(low <= 0 <= high for low, high in bounds.values()):
         return False
     densities = {edge: float(low + high) for edge, (low, high) in bounds.items()}
+    if any(star.hole is not None for star in stars.values()):
+        return True
     return any(_gap(star, densities) > _CLOSED for star in stars.values())
 
 

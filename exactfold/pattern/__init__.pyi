@@ -32,6 +32,7 @@ from exactfold.pattern.opening import open_pattern as open_pattern
 from exactfold.pattern.panel_pattern import PanelPattern as PanelPattern
 from exactfold.pattern.periodic.cell_files import cell_document as cell_document
 from exactfold.pattern.periodic.cell_files import read_cell as read_cell
+from exactfold.pattern.periodic.drawn import drawn_cell as drawn_cell
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern as PeriodicPattern
 from exactfold.pattern.periodic.random_cells import random_cell as random_cell
 from exactfold.pattern.triangulating.delaunay_sheets import delaunay as delaunay

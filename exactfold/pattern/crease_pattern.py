@@ -17,7 +17,7 @@ from exactfold.exact.numbers import (
     over_common_denominator,
     snap,
 )
-from exactfold.pattern import validate
+from exactfold.pattern import large_disk, validate
 from exactfold.pattern.triangulated_triangles import find_triangulated_triangles
 
 Point = tuple[Fraction, Fraction]
@@ -54,14 +54,28 @@ class CreasePattern(Picture):
         vertices: Iterable[Sequence[RationalLike]],
         triangles: Iterable[Sequence[int]],
     ) -> None:
-        points = validate.points(vertices, as_rational)
-        given = validate.triples(triangles, len(points))
+        if not isinstance(vertices, Sequence):
+            vertices = tuple(vertices)
+        if not isinstance(triangles, Sequence):
+            triangles = tuple(triangles)
+        many = len(triangles) >= large_disk.MANY
+        points = large_disk.distinct_points(vertices) if many else None
+        if points is None:
+            points = validate.points(vertices, as_rational)
+        given = large_disk.index_triples(triangles, len(points)) if many else None
+        if given is None:
+            given = validate.triples(triangles, len(points))
         object.__setattr__(self, "vertices", points)
-        triples = validate.oriented_triangles(self.integer_vertices[0], given)
-        validate.incidence(len(points), triples)
-        object.__setattr__(self, "triangles", triples)
-        validate.disk(self._next, triples)
-        validate.embedding(self.integer_vertices[0], self.boundary, self._next)
+        disk = large_disk.oriented_disk(self.integer_vertices[0], given)
+        if disk is not None:
+            triples, vars(self)["boundary"] = disk
+            object.__setattr__(self, "triangles", triples)
+        else:
+            triples = validate.oriented_triangles(self.integer_vertices[0], given)
+            validate.incidence(len(points), triples)
+            object.__setattr__(self, "triangles", triples)
+            validate.disk(self._next, triples)
+        validate.embedding(self.integer_vertices[0], self.boundary, triples)
 
     # --- combinatorics ---------------------------------------------------------------------------
 
@@ -92,6 +106,8 @@ class CreasePattern(Picture):
     def edges(self) -> tuple[Edge, ...]:
         """All edges (i, j) with i < j, sorted."""
         count = len(self.vertices)
+        if len(self.triangles) >= large_disk.MANY:
+            return large_disk.sorted_edges(self.triangles, count)
         numbers: set[int] = set()  # edge (i, j) as i * count + j: integers are quickly sorted
         for a, b, c in self.triangles:
             numbers.add(a * count + b if a < b else b * count + a)

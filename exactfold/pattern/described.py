@@ -55,6 +55,8 @@ class PanelsDocument(_SheetDocument):
     """Exact coordinates; if there is a `radius`, no vertex is further than this from its point."""
     faces: Several[Face]
     """Panels, counter-clockwise."""
+    holes: NotRequired[Several[Face]]
+    """Cycles of vertices round holes, counter-clockwise, if the sheet has holes."""
     field: list[str]
     """The numbers under the square roots r1, r2, ..."""
     radius: NotRequired[Rational]
@@ -111,6 +113,8 @@ def described_panels(pattern: PanelPattern, name: str | None = None) -> PanelsDo
         "vertices": [[number_text(x), number_text(y)] for x, y in pattern.vertices],
         "faces": [list(face) for face in pattern.faces],
     }
+    if pattern.holes:
+        data["holes"] = [list(hole) for hole in pattern.holes]
     if isinstance(pattern, EnclosedPattern):
         data["radius"] = format_rational(pattern.radius)
         data["directions"] = {

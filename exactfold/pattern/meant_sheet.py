@@ -182,6 +182,8 @@ def enclose(drawn: PanelPattern, angles: Angles, noise: float) -> Realized:
     sheet near it whose edges have the exact directions. Raises `UsageError` if the coordinates of
     the drawing are irrational.
     """
+    if drawn.holes:
+        return _none(drawn, "its positions are known only nearly, and holes need them")
     written = tuple(_written(point) for point in drawn.vertices)
     if not in_a_tower(parts_of(angles)):
         angles = with_integers(angles)
@@ -224,7 +226,7 @@ def _surrounded(
     ):
         return _none(drawn, "its positions are not enclosed well enough to tell its panels")
     known = {edge: vector for edge, vector in vectors.items() if vector is not None}
-    sheet = EnclosedPattern(found.points, drawn.edges, known, found.radius)
+    sheet = EnclosedPattern(found.points, drawn.edges, known, found.radius, drawn.holes)
     size = max(max(axis) - min(axis) for axis in zip(*written, strict=True))
     distance = Fraction(decimal_above(made.distance + found.radius / size, 3))
     return Realized(drawn, sheet, distance, "box", "")
@@ -343,7 +345,7 @@ def _compared(
 ) -> Realized:
     """The sheet with these points, if it has the panels of the drawing."""
     try:
-        sheet = PanelPattern([(simple(x), simple(y)) for x, y in points], drawn.edges)
+        sheet = PanelPattern([(simple(x), simple(y)) for x, y in points], drawn.edges, drawn.holes)
     except (FoldError, PatternError, NotADiskError) as error:
         return _none(drawn, f"the exact positions do not make the sheet that was drawn: {error}")
     if sheet.faces != drawn.faces:

@@ -15,14 +15,13 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.meant.left import left_relations, nearly
 from exactfold.pattern.drawing.meant.values import Relation
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.pattern.remembered import remembered
 
 
 class WarningDocument(TypedDict):
-    """A warning: relations between creases nearly hold, and with them the result may be another."""
+    """A warning: something nearly holds, and if it held exactly, the result might be another."""
 
     vertices: Several[Natural]
-    """The vertices at which relations nearly hold."""
+    """The vertices at which relations nearly hold or folds are nearly flat."""
     text: str
     """What is printed."""
 
@@ -63,7 +62,8 @@ def near_degenerate(pattern: PatternLike) -> NearDegeneracy | None:
     >>> near_degenerate("two-vertex") is None
     True
     """
-    return _found(as_pattern(pattern))
+    relations = left_relations(as_pattern(pattern))
+    return NearDegeneracy(relations) if relations else None
 
 
 def warnings(pattern: CreasePattern) -> list[WarningDocument]:
@@ -75,9 +75,3 @@ def warnings(pattern: CreasePattern) -> list[WarningDocument]:
     """
     degeneracy = near_degenerate(pattern)
     return [] if degeneracy is None else [degeneracy.to_dict()]
-
-
-@remembered
-def _found(pattern: CreasePattern) -> NearDegeneracy | None:
-    relations = left_relations(pattern)
-    return NearDegeneracy(relations) if relations else None

@@ -50,7 +50,8 @@ class Opened(Picture):
 
     `meant` is None if no relation between creases holds nearly but not exactly. Otherwise the
     digits of the file are inexact, and `meant` says what was inferred from them: either `sheet` is
-    the sheet that was meant, or `doubt` says why answers hold for these digits only.
+    the sheet that was meant, or `doubt` says why answers hold for these digits only. They may do so
+    without such a relation, too: then `nearly` says why, once the branches of the sheet are known.
     """
 
     sheet: CreasePattern | PanelPattern
@@ -63,6 +64,7 @@ class Opened(Picture):
     field_name: str = "Q"
     cuts: bool = False
     meant: Meant | None = None
+    nearly: str = ""
     reading: Reading = field(default=PLAIN, repr=False, compare=False)
     again: Callable[[Reading], Opened] | None = field(default=None, repr=False, compare=False)
 
@@ -76,7 +78,7 @@ class Opened(Picture):
     @property
     def doubt(self) -> str:
         """Why answers about the sheet hold for these digits only; empty if they do not."""
-        return "" if self.meant is None else self.meant.doubt
+        return self.nearly if self.meant is None else self.meant.doubt or self.nearly
 
     @cached_property
     def left(self) -> tuple[Relation, ...]:
@@ -110,13 +112,13 @@ class Opened(Picture):
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:
-    """The sheet as a `CreasePattern`; None if it has larger panels or irrational coordinates.
+    """The sheet as a `CreasePattern`; None if it has larger panels, square roots or holes.
 
     Raises `TooLargeError` if the common denominator of its coordinates is too long.
     """
     from exactfold.exact.surds import rational
 
-    if pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
+    if pattern.holes or pattern.field.radicands or any(len(face) != 3 for face in pattern.faces):
         return None
     points = [(rational(x), rational(y)) for x, y in pattern.vertices]
     check_common_denominator(points)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -40,6 +42,7 @@ from exactfold.pattern.reading import PLAIN, Reading
 # Drawings need libraries that take long to load; triangulated sheets are read without them.
 if TYPE_CHECKING:
     from exactfold.pattern.drawing.repair import Sheets
+    from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 # These errors of the strict reader are final: reading the file as a drawing cannot mend them.
 _FINAL = (NumberError, StaleExactCoordinatesError)
@@ -259,6 +262,10 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
     letters = {
         (min(line.start, line.end), max(line.start, line.end)): line.letter for line in sheet.lines
     }
+    holes = _holes(pattern, letters)
+    if holes:
+        pattern = PanelPattern(pattern.vertices, pattern.edges, holes)
+    number = [f"the sheet has {counted(len(holes), 'hole')}"] if holes else []
     lines = [drawing.source, *drawing.remarks, sheets.coordinates.text]
     seen = loud(drawing, sheets)
     loss = missing(drawing, sheets, k, folds=bool(pattern.folds))
@@ -268,17 +275,29 @@ def _chosen(drawing: Drawing, sheets: Sheets, reading: Reading) -> Opened:
             raise MalformedDrawingError("; ".join((loss, *left_out)))
         lines.insert(0, f"warning: {loss}")
         seen = (lines[0], *seen)
-    lines += [str(repair) for repair in sheets.repairs]
+    lines += [*(str(repair) for repair in sheets.repairs), *number]
     return Opened(
         triangulated(pattern) or pattern,
         letters,
         tuple(lines),
-        brief(drawing, sheets),
+        (*brief(drawing, sheets), *number),
         seen,
         largest_move=sheets.coordinates.largest_move,
         field_name=pattern.field_name,
         cuts=any(one.cuts for one in sheets.repairs),
     )
+
+
+def _holes(pattern: PanelPattern, letters: Mapping[Edge, str]) -> list[tuple[int, ...]]:
+    """The faces without paper: those that only boundary lines surround, beside other faces."""
+    if len(pattern.faces) == 1:
+        return []
+    bounding = {edge for edge, letter in letters.items() if letter in tuple("BC")}
+    return [
+        face
+        for face in pattern.faces
+        if all((min(i, j), max(i, j)) in bounding for i, j in pairwise((*face, face[0])))
+    ]
 
 
 def triangles(opened: Opened, needs: str) -> CreasePattern:
@@ -290,6 +309,7 @@ def triangles(opened: Opened, needs: str) -> CreasePattern:
     sheet = opened.sheet
     if isinstance(sheet, CreasePattern):
         return sheet
+    sheet.check_disk(f"`{needs}`")
     if sheet.field.radicands:
         raise NotCountedError(
             f"{needs} takes triangulated sheets with rational coordinates, and the coordinates of "

@@ -10,13 +10,15 @@ from exactfold.pattern.panel_pattern import PanelPattern
 
 
 def panels_document(pattern: PanelPattern) -> dict[str, Any]:
-    """The vertices, as exact numbers in their field, and the edges.
+    """The vertices, as exact numbers in their field, the edges, and the holes if there are any.
 
     Raises `NotApplicableError` for a sheet whose positions are known only nearly.
     """
     pattern.check_positions()
     field = pattern.field
+    holes = {"holes": [list(hole) for hole in pattern.holes]} if pattern.holes else {}
     return {
+        **holes,
         "radicands": [[format_rational(c) for c in r] for r in field.radicands],
         "vertices": [[number_document(x, field) for x in point] for point in pattern.vertices],
         "edges": [[i, j] for i, j in pattern.edges],

@@ -13,7 +13,12 @@ from typing import Final, TypeAlias
 
 from exactfold._support.notebook import Picture
 from exactfold._support.plurals import counted
-from exactfold.errors import MalformedPatternError, NotADiskError, NotApplicableError
+from exactfold.errors import (
+    MalformedPatternError,
+    NotADiskError,
+    NotApplicableError,
+    NotCountedError,
+)
 from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, common_field
 from exactfold.pattern.planar import counter_clockwise, trace_faces
@@ -34,8 +39,13 @@ class PanelPattern(Picture):
     passes each of its vertices once. Faces need not be convex, and creases may end anywhere on the
     boundary.
 
-    Raises the errors of `trace_faces`, `MalformedPatternError` if there is no face, and
-    `NotADiskError` if a part of the sheet hangs by one vertex.
+    `holes` are bounded faces where there is no paper, as cycles of vertices with any start and
+    direction. They are kept sorted, counter-clockwise from the smallest vertex. The boundary of the
+    sheet includes that of its holes.
+
+    Raises the errors of `trace_faces`, `MalformedPatternError` if there is no face or if a hole is
+    none or takes all panels of an edge, and `NotADiskError` if a part of the sheet hangs by one
+    vertex; so it does where a hole touches the edge of the paper or another hole.
 
     >>> cross = PanelPattern([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, 0), (0, -1), (1, 0),
     ...                       (0, 1), (-1, 0)],
@@ -43,12 +53,22 @@ class PanelPattern(Picture):
     ...                       (4, 5), (4, 6), (4, 7), (4, 8)])
     >>> cross.interior, cross.folds, len(cross.faces)
     ((4,), ((4, 5), (4, 6), (4, 7), (4, 8)), 4)
+    >>> ring = PanelPattern([(0, 0), (9, 0), (0, 9), (3, 3), (4, 3), (3, 4)], [(0, 1), (1, 2),
+    ...     (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5)], holes=[(3, 4, 5)])
+    >>> ring.interior, ring.folds, len(ring.faces), ring.holes
+    ((), ((0, 3), (1, 4), (2, 5)), 3, ((3, 4, 5),))
     """
 
     vertices: tuple[Point, ...]
     edges: tuple[Edge, ...]
+    holes: tuple[tuple[int, ...], ...]
 
-    def __init__(self, vertices: Iterable[Sequence[Number]], edges: Iterable[Edge]) -> None:
+    def __init__(
+        self,
+        vertices: Iterable[Sequence[Number]],
+        edges: Iterable[Edge],
+        holes: Iterable[Sequence[int]] = (),
+    ) -> None:
         points = tuple((_exact(x), _exact(y)) for x, y in vertices)
         field = common_field(c for point in points for c in point)
         if field.radicands:
@@ -59,11 +79,37 @@ class PanelPattern(Picture):
                 raise MalformedPatternError(f"edge {i}-{j} uses a vertex that does not exist")
         object.__setattr__(self, "vertices", points)
         object.__setattr__(self, "edges", pairs)
+        object.__setattr__(self, "holes", ())
         if not pairs or not self.faces:
             raise MalformedPatternError(
                 "the edges of the drawing enclose no face: draw the boundary of the sheet"
             )
+        if taken := [tuple(hole) for hole in holes]:
+            self._take_out(taken)
         self._check_boundary()
+
+    def _take_out(self, holes: Sequence[tuple[int, ...]]) -> None:
+        """Makes holes of faces; every edge must be left a side of a panel."""
+        known = {frozenset(_sides(face)): face for face in self.faces}
+        found = []
+        for hole in holes:
+            face = known.pop(frozenset(_sides(hole)), None) or known.pop(
+                frozenset(_sides(hole[::-1])), None
+            )
+            if face is None:
+                named = "-".join(map(str, hole))
+                raise MalformedPatternError(f"the hole {named} is no face of the drawing")
+            found.append(face)
+        if not known:
+            raise MalformedPatternError("all faces are holes: the sheet has no panel")
+        for name in ("sides", "boundary_edges", "folds", "boundary_set", "interior", "stars"):
+            self.__dict__.pop(name, None)
+        self.__dict__["faces"] = tuple(sorted(known.values()))
+        object.__setattr__(self, "holes", tuple(sorted(found)))
+        bare = [(i, j) for i, j in self.edges if not {(i, j), (j, i)} & self.sides.keys()]
+        if bare:
+            i, j = bare[0]
+            raise MalformedPatternError(f"edge {i}-{j} is the side of no panel", vertices=[i, j])
 
     # --- combinatorics ---------------------------------------------------------------------------
 
@@ -92,7 +138,7 @@ class PanelPattern(Picture):
         """The face on the left of each directed edge, for the edges that have one."""
         sides: dict[tuple[int, int], int] = {}
         for k, face in enumerate(self.faces):
-            for i, j in zip(face, (*face[1:], face[0]), strict=True):
+            for i, j in _sides(face):
                 sides[i, j] = k
         return MappingProxyType(sides)
 
@@ -135,11 +181,12 @@ class PanelPattern(Picture):
 
     @property
     def D(self) -> int:
-        """The number of folds minus 3 Vi; if not negative, a lower bound of all dimensions.
+        """The number of folds, less 3 for each interior vertex and 6 for each hole.
 
-        Every component of the configuration space has at least this dimension.
+        Every component of the configuration space has at least this dimension, if it is not
+        negative: a vertex closes if three equations hold, and a hole if six do.
         """
-        return len(self.folds) - 3 * len(self.interior)
+        return len(self.folds) - 3 * len(self.interior) - 6 * len(self.holes)
 
     # --- geometry --------------------------------------------------------------------------------
 
@@ -172,12 +219,28 @@ class PanelPattern(Picture):
     def check_positions(self) -> None:
         """Raises `NotApplicableError` if the positions of vertices are known only nearly."""
 
+    def check_disk(self, what: str = "this") -> None:
+        """Raises `NotCountedError` for a sheet with holes; `what` names the work that needs one
+        without holes.
+        """
+        if self.holes:
+            raise NotCountedError(
+                f"the sheet has {counted(len(self.holes), 'hole')}, and {what} is not done yet for "
+                "sheets with holes: `count` says how they start to fold, and `info`, `vertices`, "
+                "`convert`, `draw` and `view` take them"
+            )
+
     def _check_boundary(self) -> None:
         ends: dict[int, int] = {}
         for edge in self.boundary_edges:
             for v in edge:
                 ends[v] = ends.get(v, 0) + 1
         pinched = sorted(v for v, count in ends.items() if count != 2)
+        if pinched and self.holes:
+            raise NotADiskError(
+                f"a hole touches the edge of the paper or another hole in vertex {pinched[0]}",
+                vertices=pinched,
+            )
         if pinched:
             raise NotADiskError(
                 f"the sheet hangs together only by vertex {pinched[0]}: its boundary passes this "
@@ -192,25 +255,28 @@ class PanelPattern(Picture):
         """The digest of the exact pattern: the field, the vertices in order, and the edges.
 
         It is the SHA-256 of the lines `exactfold panels 1`, `r C...` for each adjoined root,
-        `v X... Y...` for each vertex (all coefficients) and `e I J` for each edge. A newline ends
-        each line.
+        `v X... Y...` for each vertex (all coefficients), `e I J` for each edge and `h I J K...` for
+        each hole. A newline ends each line.
         """
         lines = ["exactfold panels 1"]
         lines += ["r " + " ".join(map(format_rational, r)) for r in self.field.radicands]
         lines += [f"v {_text(x)} {_text(y)}" for x, y in self.vertices]
         lines += [f"e {i} {j}" for i, j in self.edges]
+        lines += ["h " + " ".join(map(str, hole)) for hole in self.holes]
         return _digest(lines)
 
     def __hash__(self) -> int:
-        return hash((len(self.vertices), self.edges))
+        return hash((len(self.vertices), self.edges, self.holes))
 
     def __reduce__(self) -> tuple[object, ...]:
-        return PanelPattern, (self.vertices, self.edges)  # without the cached properties
+        # without the cached properties
+        return PanelPattern, (self.vertices, self.edges, self.holes)
 
     def __repr__(self) -> str:
         return (
             f"<PanelPattern: {counted(len(self.interior), 'interior vertex')}, "
-            f"{counted(len(self.folds), 'fold')}, {counted(len(self.faces), 'panel')}>"
+            f"{counted(len(self.folds), 'fold')}, {counted(len(self.faces), 'panel')}"
+            f"{', ' + counted(len(self.holes), 'hole') if self.holes else ''}>"
         )
 
 
@@ -234,8 +300,9 @@ class EnclosedPattern(PanelPattern):
         edges: Iterable[Edge],
         directions: Mapping[Edge, Point],
         radius: Fraction,
+        holes: Iterable[Sequence[int]] = (),
     ) -> None:
-        super().__init__(vertices, edges)
+        super().__init__(vertices, edges, holes)
         if missing := [fold for fold in self.folds if fold not in directions]:
             raise MalformedPatternError(f"fold {missing[0][0]}-{missing[0][1]} has no direction")
         object.__setattr__(self, "directions", MappingProxyType(dict(directions)))
@@ -268,6 +335,7 @@ class EnclosedPattern(PanelPattern):
         lines += ["r " + " ".join(map(format_rational, r)) for r in self.field.radicands]
         lines += [f"v {_text(x)} {_text(y)}" for x, y in self.vertices]
         lines += [f"e {i} {j}" for i, j in self.edges]
+        lines += ["h " + " ".join(map(str, hole)) for hole in self.holes]
         lines += [f"d {i} {j} {_text(x)} {_text(y)}" for (i, j), (x, y) in self._sorted()]
         return _digest(lines)
 
@@ -278,7 +346,12 @@ class EnclosedPattern(PanelPattern):
         return super().__hash__()
 
     def __reduce__(self) -> tuple[object, ...]:
-        return EnclosedPattern, (self.vertices, self.edges, dict(self.directions), self.radius)
+        parts = (self.vertices, self.edges, dict(self.directions), self.radius, self.holes)
+        return EnclosedPattern, parts
+
+
+def _sides(cycle: Sequence[int]) -> list[tuple[int, int]]:
+    return list(zip(cycle, (*cycle[1:], cycle[0]), strict=True))
 
 
 def _text(value: Number) -> str:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
-from typing import Any
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any, Final
 
 from exactfold.pattern.validate import Triangle, orientation
+
+_MANY: Final = 3000
+"""From this number of edges on, arrays are quicker than sets."""
 
 
 def find_triangulated_triangles(
@@ -24,29 +27,58 @@ def find_triangulated_triangles(
     vertices inside a 3-cycle are found by walking from its sides over the faces inside. So the work
     is proportional to the inside of the cycles, not to the pattern.
     """
-    neighbours: dict[int, set[int]] = {v: set() for v in range(len(points))}
-    for i, j in edges:
-        neighbours[i].add(j)
-        neighbours[j].add(i)
     faces = set(triangles)
     cycles: list[tuple[Triangle, frozenset[int]]] = []
-    for i, j in edges:
-        for k in neighbours[i] & neighbours[j]:
-            if k < j:
-                continue
-            turn = orientation(points[i], points[j], points[k])
-            cycle = (i, j, k) if turn > 0 else (i, k, j)
-            if turn == 0 or cycle in faces:
-                continue
-            inside = _inside(following, cycle)
-            if inside:
-                cycles.append((cycle, inside))
+    for i, j, k in _cycles(len(points), edges, len(triangles)):
+        turn = orientation(points[i], points[j], points[k])
+        cycle = (i, j, k) if turn > 0 else (i, k, j)
+        if turn == 0 or cycle in faces:
+            continue
+        inside = _inside(following, cycle)
+        if inside:
+            cycles.append((cycle, inside))
     holders: dict[int, list[frozenset[int]]] = {}
     for _, inside in cycles:
         for v in inside:
             holders.setdefault(v, []).append(inside)
     maximal = [(t, s) for t, s in cycles if not any(s < other for other in holders[min(s)])]
     return tuple(sorted((t, tuple(sorted(s))) for t, s in maximal))
+
+
+def _cycles(
+    count: int, edges: Collection[tuple[int, int]], faces: int
+) -> Iterable[tuple[int, int, int]]:
+    """All 3-cycles i < j < k of the graph with these edges; none if each of them is a face.
+
+    Each of the `faces` is such a cycle, so there is no other one if there are no more.
+    """
+    if len(edges) < _MANY:
+        neighbours: dict[int, set[int]] = {v: set() for v in range(count)}
+        for i, j in edges:
+            neighbours[i].add(j)
+            neighbours[j].add(i)
+        return [(i, j, k) for i, j in edges for k in neighbours[i] & neighbours[j] if k > j]
+    import numpy as np
+
+    # Edges go from a vertex to one of no lower degree, so that few leave any vertex.
+    ends = np.array(list(edges), dtype=np.int64)
+    by_degree = np.argsort(np.bincount(ends.ravel(), minlength=count), kind="stable")
+    rank = np.argsort(by_degree)[ends]
+    known = np.sort(rank.min(axis=1) * count + rank.max(axis=1))
+    first, second = np.divmod(known, count)
+    leaving = np.bincount(first, minlength=count)
+    begun = np.cumsum(leaving) - leaving
+    # Each edge (i, j) with all edges (i, k) after it: a cycle if there is an edge (j, k).
+    after = (begun + leaving)[first] - np.arange(len(first)) - 1
+    one = np.repeat(np.arange(len(first)), after)
+    other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(after) - after, after)
+    wanted = second[one] * count + second[other]
+    place = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
+    closed = known[place] == wanted
+    if closed.sum() == faces:
+        return ()
+    corners = [by_degree[x[closed]] for x in (first[one], second[one], second[other])]
+    return [(i, j, k) for i, j, k in np.sort(corners, axis=0).T.tolist()]
 
 
 def _inside(following: Mapping[int, Mapping[int, int]], cycle: Triangle) -> frozenset[int]:

@@ -252,7 +252,9 @@ def _steps(fan: Mapping[int, int], start: int) -> int:
     return steps
 
 
-def embedding(vertices: Sequence[IntPoint], boundary: Sequence[int], rotation: Rotation) -> None:
+def embedding(
+    vertices: Sequence[IntPoint], boundary: Sequence[int], triangles: Sequence[Triangle]
+) -> None:
     """Checks that no faces overlap, by checking that the boundary is a simple polygon.
 
     This suffices. All triangles of the disk are positively oriented, so each point off the boundary
@@ -271,13 +273,19 @@ def embedding(vertices: Sequence[IntPoint], boundary: Sequence[int], rotation: R
         for other in active:
             if other[2] <= box[3] and box[2] <= other[3] and _meet(vertices, box[4:], other[4:]):
                 (i, j), (k, m) = box[4:], other[4:]
+                third = {s: c for a, b, d in triangles for s, c in _sides(a, b, d)}
                 raise OverlapError(
                     f"boundary edges {k}-{m} and {i}-{j} meet: the faces "
-                    f"({k}, {m}, {rotation[k][m]}) and ({i}, {j}, {rotation[i][j]}) "
+                    f"({k}, {m}, {third[k, m]}) and ({i}, {j}, {third[i, j]}) "
                     "overlap or touch",
                     edges=[(min(i, j), max(i, j)), (min(k, m), max(k, m))],
                 )
         active.append(box)
+
+
+def _sides(a: int, b: int, c: int) -> tuple[tuple[tuple[int, int], int], ...]:
+    """The directed sides of a triangle, each with the third corner."""
+    return ((a, b), c), ((b, c), a), ((c, a), b)
 
 
 def _meet(vertices: Sequence[IntPoint], first: tuple[int, int], second: tuple[int, int]) -> bool:

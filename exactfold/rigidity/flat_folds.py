@@ -41,6 +41,8 @@ def flat_folds(
     while pending:
         vertex = pending.pop()
         around = tuple((min(vertex, j), max(vertex, j)) for j in pattern.star(vertex))
+        if len(around) - 2 - sum(known[fold] == 0 for fold in around) > 2:
+            continue  # at least three dimensions remain
         for fold in _at_vertex(pattern, vertex, around, tuple(known[fold] for fold in around)):
             known[fold] = 0
             pending |= set(fold) & interior
@@ -55,8 +57,6 @@ def _at_vertex(
     ring = pattern.star(vertex)
     # Heights of the star modulo planes: the hub and two neighbouring vertices have height 0.
     free = ring[2:]
-    if len(free) - signs.count(0) > 2:
-        return []  # at least three dimensions remain
     bends = [fold_functional(pattern, fold) for fold in folds]
     rows = [[Fraction(bend.get(j, 0)) for j in free] for bend in bends]
     flat = [row for row, sign in zip(rows, signs, strict=True) if sign == 0]

@@ -30,6 +30,7 @@ from peer_report import as_markdown, as_text, pair_table
 from real_files import HERE, program
 
 from exactfold.branches.counting.find import BranchFinder
+from exactfold.motion import find_loops
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.triangulating.random_squares import sample_random_square
 from exactfold.pattern.writing.fold_writing import write_fold
@@ -54,7 +55,13 @@ def commands(folder: Path) -> dict[str, Callable[[], list[str]]]:
         path, sheet = square(20, k)
         return ["match", path, "--letters", half_letters(sheet, SEED + k), "--json"]
 
+    def loops(n: int) -> str:
+        path = folder / f"loops-{n}.txt"
+        find_loops(sample_random_square(n, SEED).pattern, certificate=path)
+        return str(path)
+
     stream = ["--stream", "{out}/stream.txt", "--workers", "1"]
+    drawn = ["--interior", "20000", "--seed", str(SEED), "--redraw", "-o", "{out}/sheet.fold"]
     return {
         "--help": lambda: ["--help"],
         "count two-vertex": lambda: ["count", "two-vertex"],
@@ -63,7 +70,10 @@ def commands(folder: Path) -> dict[str, Callable[[], list[str]]]:
         "count, 10 vertices": lambda: ["count", square(10)[0], "--json"],
         "count --stream, 16 vertices": lambda: ["count", square(16)[0], *stream],
         "branch, 1000 vertices": lambda: ["branch", square(1000)[0], "--up", "4", "--json"],
+        "branch, 20000 vertices": lambda: ["branch", square(20000)[0], "--up", "4", "--json"],
+        "random, 20000 vertices redrawn": lambda: ["random", *drawn],
         "motions, 3 vertices": lambda: ["motions", square(3)[0], "--workers", "1"],
+        "check, loops of 4 vertices": lambda: ["check", loops(4)],
         "fold miura": lambda: ["fold", "miura"],
         "view waterbomb": lambda: ["view", "waterbomb", "-o", "{out}/view.html"],
         **{

@@ -45,7 +45,7 @@ KINDS = (
 )
 REASONS = {
     "SeveralSheetsError": "several sheets",
-    "NotADiskError": "holes",
+    "NotADiskError": "a sheet that hangs together by a point",
     "FoldedStateError": "a folded state",
     "FoldError": "border lines between panels",
     "DisconnectedError": "lines that do not meet",

@@ -90,6 +90,7 @@ def test_a_file_through_a_pipe_while_others_are_checked(
             assert checked.result() == expected(path)
 
 
+@pytest.mark.slow
 def test_files_on_processes_of_their_own_in_threads(
     files: dict[str, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:

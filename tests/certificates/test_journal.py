@@ -109,6 +109,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @posix
 def test_a_run_that_is_killed_leaves_whole_blocks_and_no_lock(tmp_path: Path, whole: bytes) -> None:
     script, path = tmp_path / "run.py", tmp_path / "c.txt"

@@ -234,6 +234,7 @@ def test_modules_of_the_checker_keep_nothing_of_a_file(blocks: dict[str, bytes])
     assert kept() == before
 
 
+@pytest.mark.slow
 def test_what_is_assigned_in_modules_at_run_time() -> None:
     """Beside workers, which check one file, the file descriptor to which errors are written."""
     root, found = Path(exactfold.__file__).parent, set()

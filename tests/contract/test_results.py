@@ -44,6 +44,11 @@ RESULTS = {
     "no flat-folded state": lambda: exactfold.flat("square-twist"),
     "no flat vertex": lambda: exactfold.flat("zigzags"),
     "torques": lambda: exactfold.actuate("two-vertex", "+-"),
+    "a tolerance": lambda: exactfold.tolerance("two-vertex"),
+    "a tolerance of panels": lambda: exactfold.tolerance("zigzags"),
+    "a design": lambda: exactfold.design.designed(
+        exactfold.pattern.load("two-vertex"), maximise="tolerance"
+    ),
     "a motion": lambda: _motion(),
     "a motion of panels": lambda: _panel_motion(),
     "a motion of a family": lambda: _family_motion(),

@@ -151,6 +151,7 @@ def test_two_flaps_on_one_panel():
     assert reached(over).status is PROVED
 
 
+@pytest.mark.slow
 def test_a_contact_that_floats_miss_is_found_by_heights():
     """Without an event, the crossing at the end refutes by itself."""
     motion = to_the_end("square-twist", 2)

@@ -10,6 +10,7 @@ from math import cos, radians, sin
 import pytest
 from running import UNDECIDED as EXIT_UNDECIDED
 from running import run
+from sampling import slow_after
 
 import exactfold
 from exactfold import PROVED, REFUTED, UNDECIDED, flat, read
@@ -120,7 +121,7 @@ def test_three_equal_panels_in_rounded_digits_are_not_refuted(side, digits):
     assert found.near.states == 2
 
 
-@pytest.mark.parametrize("turned", [0.28 + 0.17 * k for k in range(6)])
+@pytest.mark.parametrize("turned", slow_after(2, [0.28 + 0.17 * k for k in range(6)]))
 @pytest.mark.parametrize("digits", [1, 2, 3, 4])
 def test_nothing_false_is_proved_about_turned_panels(turned, digits):
     sheet = panels_in_a_row([100] * 3, 100, "VV", turned=turned, digits=digits)

@@ -251,6 +251,7 @@ def _two_models(variables, clauses, clock):
         yield model
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.integers(1, 3), min_size=2, max_size=5),

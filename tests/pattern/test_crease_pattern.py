@@ -1,4 +1,5 @@
 import hashlib
+import random
 from fractions import Fraction
 
 import numpy as np
@@ -18,8 +19,10 @@ from exactfold.errors import (
     OverlapError,
     UsageError,
 )
+from exactfold.pattern import triangulated_triangles
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.families import flat_octahedron_in_square, single_vertex
+from exactfold.pattern.triangulating.delaunay_sheets import delaunay
 from exactfold.pattern.validate import segments_meet
 
 CORNERS = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -387,3 +390,21 @@ def test_snapping_onto_another_vertex_is_refused():
     close = CreasePattern([(0, 0), (1, 0), ("1.1", "0.1"), (0, 1)], [(0, 1, 3), (1, 2, 3)])
     with pytest.raises(MalformedPatternError, match="vertices 1 and 2"):
         close.snapped(1)
+
+
+def test_arrays_find_the_same_triangulated_triangles(monkeypatch):
+    source = random.Random(5)
+    corners = [(0, 0), (50, 0), (50, 50), (0, 50)]
+    for number in (0, 10, 60):
+        inside = {(source.randrange(1, 50), source.randrange(1, 50)) for _ in range(number)}
+        pattern = delaunay([*corners, *sorted(inside)])
+        points, triangles = list(pattern.vertices), list(pattern.triangles)
+        for _ in range(number // 2):  # a vertex in the middle of a face
+            a, b, c = triangles.pop(source.randrange(len(triangles)))
+            triangles += [(a, b, len(points)), (b, c, len(points)), (c, a, len(points))]
+            points.append(tuple(sum(points[v][k] for v in (a, b, c)) / 3 for k in (0, 1)))
+        monkeypatch.setattr(triangulated_triangles, "_MANY", 10**9)
+        expected = CreasePattern(points, triangles).triangulated_triangles
+        monkeypatch.setattr(triangulated_triangles, "_MANY", 0)
+        assert CreasePattern(points, triangles).triangulated_triangles == expected
+        assert bool(expected) == bool(number)

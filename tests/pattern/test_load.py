@@ -172,6 +172,7 @@ TAKES_PATTERN = {
     "branches.count_shapes": ({4: 1},),
     "design.actuate": ("+-",),
     "design.actuate_all": (),
+    "design.designed": (dict.fromkeys([(0, 4), (3, 4), (4, 5)], "M"),),
     "design.match": ("MVVUUUU",),
 }
 
@@ -223,6 +224,8 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "pattern.Converted",
         "design.Actuation",
         "design.PanelActuation",
+        "design.Designed",
+        "design.Tolerance",
         "design.AllAssignments",
         "design.Match",
         "layers.FlatStates",

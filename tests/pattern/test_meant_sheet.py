@@ -12,6 +12,7 @@ import pytest
 from flint import arb, ctx
 from noisy_sheets import angles_of, with_noise
 from panel_sheets import chicken_wire, mesh, miura, tiling
+from sampling import slow_after
 
 from exactfold import checker
 from exactfold.errors import NotApplicableError, UsageError
@@ -265,7 +266,7 @@ def test_half_of_a_recognised_angle_extends_the_field() -> None:
 NAMES = ["bird-base", "flapping-bird", "map-fold", "miura", "square-twist", "waterbomb", "windmill"]
 
 
-@pytest.mark.parametrize("noise", [1e-12, 1e-9, 1e-6])
+@pytest.mark.parametrize("noise", slow_after(1, [1e-9, 1e-12, 1e-6]))
 @pytest.mark.parametrize("name", NAMES)
 def test_inferred_relations_have_a_sheet_and_a_certificate(name: str, noise: float) -> None:
     """The certificate holds every relation under the name that the inference gives it."""

@@ -80,6 +80,7 @@ def test_random_decimals_are_hardly_ever_suspected():
     assert suspected <= 4
 
 
+@pytest.mark.slow
 def test_two_thousand_random_vertices_are_not_suspected():
     pattern = sample_random_square(2000, 1, 1 << 20, redraw=True).pattern
     assert near_degenerate(pattern) is None

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 from noise_put_back import SHEETS, noisy, turned
+from sampling import slow_after
 from typer.testing import CliRunner
 
 import exactfold
@@ -41,9 +42,7 @@ def by_hand(name: str, seed: int = 0) -> dict[str, object]:
     }
 
 
-@pytest.mark.parametrize(
-    ("name", "seed"), [("miura", 0), pytest.param("map-fold", 1, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("name", "seed"), slow_after(0, [("miura", 0), ("map-fold", 1)]))
 def test_proposals_are_what_their_noise_level_gives(name: str, seed: int) -> None:
     document = by_hand(name, seed)
     opened = exactfold.read(document)
@@ -74,6 +73,7 @@ def test_a_count_tells_a_proposal_and_stays_undecided() -> None:
     }
 
 
+@pytest.mark.slow
 def test_a_proposal_is_printed_with_its_answer_and_no_claim_about_the_drawing(
     tmp_path: Path,
 ) -> None:

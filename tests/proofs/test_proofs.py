@@ -31,6 +31,7 @@ QUOTATIONS = Path(__file__).parent / "quotations.json"
 LONG = (
     "all_real",
     "branch_angles",
+    "curvature_expansion",
     "discussion_counts",
     "exceptions",
     "force_balance",
@@ -38,9 +39,13 @@ LONG = (
     "hub_balance",
     "inertia",
     "inertia_cases",
+    "length_equations",
     "multiplicity",
     "periodic",
     "random_squares",
+    "second_order_motions",
+    "vertex_eigenvalues",
+    "vertex_forms",
 )
 """Proofs that take a second or more each: CI goes through them as well."""
 
@@ -124,13 +129,9 @@ def check_replacement(claim: Claim) -> None:
 
 LONGEST = {
     *LONG,
-    "curvature_expansion",
-    "hub_balance",
     "panels",
     "wheel_stress",
     "kapovich_millson",
-    "vertex_eigenvalues",
-    "vertex_forms",
 }
 """Those whose changes take more than five seconds to try: by hand, with `-m survey`."""
 
@@ -217,7 +218,7 @@ def drawn(claim: Claim, number: int) -> list[Text]:
 
 def test_formulas_with_mistakes_drawn_at_random_do_not_hold() -> None:
     claims = [c for name in sorted(set(MODULES) - set(LONG)) for c in load(name).claims]
-    assert len(claims) > 30
+    assert len(claims) > 15
     held = [text.latex for c in claims for text in drawn(c, 3) if c.holds(text)]
     known = [part for parts in SURVIVORS.values() for part in parts]
     assert [text for text in held if not any(part in text for part in known)] == []
@@ -255,6 +256,7 @@ def test_as_many_expressions_are_evaluated_in_both_forms() -> None:
         script.formula("A.1", "Demo", r"1+1\text{ or }1+2", "1+1", at=[{"values": (2,)}])
 
 
+@pytest.mark.slow
 def test_a_garbled_correction_and_a_flipped_sign_do_not_hold() -> None:
     claims = {c.key: c for name in ("vertex_forms", "force_balance") for c in load(name).claims}
     continuant, rim = claims["C.7"], claims["B.1"]

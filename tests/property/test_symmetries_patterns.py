@@ -10,6 +10,7 @@ from itertools import combinations
 import pytest
 from hypothesis import given, reject, settings
 from hypothesis import strategies as st
+from sampling import slow_after
 from sheets import (
     SQUARE,
     mapped,
@@ -179,12 +180,15 @@ def census(chart: Chart) -> Counter[tuple[tuple[int | None, ...], tuple[int | No
 
 @pytest.mark.parametrize(
     "pattern",
-    [
-        random_square(2, seed=3),
-        random_square(3, seed=7),
-        scrambled(3, reflex_corners(3), 2, loose=True),
-        straight_side(smallest=False),
-    ],
+    slow_after(
+        1,
+        [
+            random_square(2, seed=3),
+            random_square(3, seed=7),
+            scrambled(3, reflex_corners(3), 2, loose=True),
+            straight_side(smallest=False),
+        ],
+    ),
 )
 def test_choice_of_pinned_triangle(pattern: CreasePattern) -> None:
     expected = census(BranchSystem(pattern).chart)

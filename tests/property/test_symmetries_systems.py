@@ -99,6 +99,7 @@ def test_permuted_unknowns_and_equations(seed: int, n: int, data: st.DataObject)
     check_same(seed, n, changed)
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(1, 4), data=st.data())
 def test_scaled_equations(seed: int, n: int, data: st.DataObject) -> None:
@@ -114,6 +115,7 @@ def test_scaled_equations(seed: int, n: int, data: st.DataObject) -> None:
     check_same(seed, n, changed)
 
 
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(1, 3), data=st.data())
 def test_combined_equations(seed: int, n: int, data: st.DataObject) -> None:

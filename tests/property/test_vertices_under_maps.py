@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import atan2, gcd
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -52,6 +53,7 @@ def test_mountains_and_valleys_may_be_exchanged(vertex: Folds) -> None:
     assert folds([(d, OTHER.get(x, x)) for d, x in vertex]) is folds(list(vertex))
 
 
+@pytest.mark.slow
 @given(vertices(), st.lists(st.fractions(Fraction(1, 9), 9), min_size=8, max_size=8))
 def test_lengths_do_not_matter(vertex: Folds, lengths: list[Fraction]) -> None:
     scaled = [((x * r, y * r), f) for ((x, y), f), r in zip(vertex, lengths, strict=False)]

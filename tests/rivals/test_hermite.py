@@ -48,6 +48,7 @@ def counts_by_isolation(solution):
     return solution.distinct, sum(len(c.real_roots(8)) for c in solution.classes)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pattern", PATTERNS.values(), ids=PATTERNS)
 def test_counts_of_patterns(pattern):
     chart = BranchSystem(pattern).chart

@@ -131,6 +131,7 @@ def test_the_square_with_shared_letters_of_the_documentation():
     assert count_branches(random_square(5, 50000058)).repeated_assignments > 0
 
 
+@pytest.mark.slow
 def test_real_zeros_are_counted_by_hermite_forms_as_well():
     run = run_study("perturbed", numbers={2: 5, 3: 10})
     for row in run.rows:
@@ -227,6 +228,7 @@ def test_motions_of_a_branch_with_a_flat_vertex_are_not_decided():
     assert motions._proof_of(flat) is None
 
 
+@pytest.mark.slow
 def test_what_the_figures_show():
     run = run_study("figures")
     rows = {row["figure"]: row for row in run.rows}

@@ -12,8 +12,11 @@ from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
-from exactfold.app.shell.shell import EXIT, Bar, name_of
+from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.actuating import Actuated, actuate_opened
+from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import Choice
+from exactfold.branches.counting.doubted import about
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.design.actuation.result import Actuation
 from exactfold.errors import InputError, NumberError
@@ -22,6 +25,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.writing.fold_writing import checked_target, require_folder, write_text
 
 if TYPE_CHECKING:
+    from exactfold.pattern.opening import Opened
     from exactfold.pattern.panel_pattern import PanelPattern
 
 
@@ -43,10 +47,11 @@ class Driven(ActuateOptions):
             opened = read_any(self.file, self.reading, verbose=self.verbose)
             self.require_name()
             torques = None if self.torques is None else torques_in(self.torques, opened.sheet)
-            found = actuate_opened(
-                opened, choice_of(self, opened), self.creases, torques, hinges, bar
-            )
+            choice = self._listed(opened, choice_of(self, opened), bar)
+            found = actuate_opened(opened, choice, self.creases, torques, hinges, bar)
             self._write(found)
+            if isinstance(found, Actuation):
+                opened = about(opened, found.branch)
         if self.as_json:
             document = in_doubt(opened, found.to_dict(name_of(self.file), self._certificate))
             if opened.doubt:
@@ -58,6 +63,18 @@ class Driven(ActuateOptions):
             tell_doubt(opened)
             report.show(report.actuation_report(found, everything=self.everything))
         return EXIT[verdict(opened, found.status)]
+
+    def _listed(self, opened: Opened, choice: Choice, bar: Bar) -> Choice:
+        """The choice, with the branch that letters name; a line says if they are its other side."""
+        if choice.letters is None or not isinstance(opened.sheet, CreasePattern):
+            return choice
+        chosen = the_branch(opened, choice, bar, needs="actuate")
+        if chosen.side < 0:
+            say(
+                f"the letters are those of the other side of branch {chosen.branch.sign_text}: the "
+                "opposite torques drive it"
+            )
+        return Choice(signs=chosen.branch.vertex_signs)
 
     @property
     def _certificate(self) -> str | None:

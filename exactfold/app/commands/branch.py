@@ -16,6 +16,7 @@ from exactfold.app.shell.patterns import in_doubt, read, tell_doubt
 from exactfold.app.shell.shell import Bar, name_of, say
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.app.verbs.chosen import ChosenBranch
+from exactfold.branches.counting.doubted import about
 from exactfold.branches.counting.find import BranchFinder
 from exactfold.branches.values.branch import Branch
 from exactfold.errors import UsageError
@@ -51,12 +52,14 @@ class Asked(BranchOptions):
             opened = read(self.file, self.reading, "branch", verbose=self.verbose).opened
             if self.batch is None:
                 self.require_name()
-            proved = not opened.doubt
+            proved, first = True, opened
             bar("setting up")
-            for name, result in self._found(opened, bar):
-                proved &= result.status is PROVED
+            for name, result in self._found(first, bar):
+                one = about(first, result)
+                opened = one if one.doubt else opened
+                proved &= result.status is PROVED and not one.doubt
                 if self.as_json:
-                    document = in_doubt(opened, result.to_dict(self.name))
+                    document = in_doubt(one, result.to_dict(self.name))
                     print(json.dumps(document), flush=True)
                 elif name:
                     rows.append(report.branch_row(name, result))
@@ -79,10 +82,11 @@ class Asked(BranchOptions):
         if self._is_many or shape:
             raise UsageError("--drive goes with --signs or --up, and with --boundary-heights")
         with Bar("reading") as bar:
-            read_sheet = read(self.file, self.reading, "branch", verbose=self.verbose)
+            opened = read(self.file, self.reading, "branch", verbose=self.verbose).opened
             self.require_name()
             bar("setting up")
-            chosen = self._chosen(read_sheet.opened, bar, angles)
+            chosen = self._chosen(opened, bar, angles)
+            opened = about(opened, chosen.branch)
             if chosen.drive is None:
                 raise UsageError("--drive names no fold")
             driven = Driven(chosen.branch, chosen.side, chosen.drive, chosen.others)
@@ -91,12 +95,11 @@ class Asked(BranchOptions):
             say(also_found(driven.others))
         self._certify(driven.branch)
         if self.as_json:
-            print(json.dumps(in_doubt(read_sheet.opened, driven.to_dict(self.name))))
+            print(json.dumps(in_doubt(opened, driven.to_dict(self.name))))
         else:
-            tell_doubt(read_sheet.opened)
+            tell_doubt(opened)
             report.show(report.branch_report(driven.branch, driven))
-        sure = not read_sheet.opened.doubt
-        return sure and driven.branch.status is PROVED and status is PROVED
+        return not opened.doubt and driven.branch.status is PROVED and status is PROVED
 
     def _chosen(self, opened: Opened, bar: Bar, angles: Angles | None = None) -> ChosenBranch:
         """The branch that the options name."""

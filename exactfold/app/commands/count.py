@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.clock import Clock
+from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app import report
 from exactfold.app.commands.stream import Streaming, advice
@@ -15,17 +16,20 @@ from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.given import Given
 from exactfold.app.shell.patterns import located, read, read_any
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say
-from exactfold.app.verbs.counting import counted_with_letters
+from exactfold.app.verbs.counting import counted_with_letters, opened_cell
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, SeveralSheetsError, UsageError
+from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.bounds import read_bytes
+from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, is_cell_file
 
 if TYPE_CHECKING:  # counting branches does not need it
     from exactfold.branches.counting.stream import StreamedCount
     from exactfold.panels.result import Decomposition
+    from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 
 
 class Asked(CountOptions):
@@ -50,6 +54,8 @@ class Asked(CountOptions):
         apart(self._components, self.pattern, self.stream)
         if self.direction is not None or is_cell_file(located(self.pattern)):
             return self._periodic()
+        if self.cell is not None:
+            raise UsageError("--cell goes with --direction X,Y: count the ways of a periodic sheet")
         if self.given:
             return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
@@ -64,6 +70,9 @@ class Asked(CountOptions):
                 if not self._takes_all(error):
                     raise
                 return self._each(error.known)
+        near = result.nearly_flat if isinstance(result, BranchCount) else None
+        if near and not result.doubt and not near_degenerate(result.pattern):
+            say(f"warning: {near.text}")  # of near relations the reader has warned
         written = self._certified(result, streamed)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
@@ -87,7 +96,7 @@ class Asked(CountOptions):
             from exactfold.design.panels.vertex.vertices import vertices
 
             report.show(report.vertices_line(vertices(opened)))
-        if not isinstance(result, BranchCount) and result.proposal and not self.as_json:
+        if result.proposal and not self.as_json:
             report.show("")
             for line in report.proposal_lines(result.proposal):
                 report.show(line)
@@ -150,7 +159,6 @@ class Asked(CountOptions):
         """Count the branches of a periodic sheet for one direction."""
         from exactfold.branches.periodic.certificate import periodic_certificate
         from exactfold.branches.periodic.counting import count_periodic
-        from exactfold.pattern.periodic.cell_files import parse_cell_bytes
 
         if self.direction is None:
             raise UsageError(
@@ -166,8 +174,8 @@ class Asked(CountOptions):
             if value is not None:
                 raise UsageError(f"{option} does not go with --direction")
         with Bar("reading") as bar:
-            cell = parse_cell_bytes(read_bytes(located(self.pattern)), name_of(self.pattern))
-            result = count_periodic(cell, self.direction, progress=bar)
+            cell = self._cell()
+            result = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
         written = None
         if self.certificate is not None:
             try:
@@ -180,6 +188,33 @@ class Asked(CountOptions):
         else:
             report.show(report.periodic_report(result, written, everything=self.everything))
         return EXIT[result.status]
+
+    def _cell(self) -> PeriodicPattern:
+        """The cell in the file; or the one that a drawing shows, which a line describes."""
+        from exactfold.pattern.periodic.cell_files import parse_cell_bytes
+        from exactfold.pattern.periodic.drawn import other_lattices, repeated
+
+        path = located(self.pattern)
+        if is_cell_file(path):
+            if self.cell is not None:
+                raise UsageError(f"{self.pattern} is a cell: leave out --cell")
+            return parse_cell_bytes(read_bytes(path), name_of(self.pattern))
+        opened = read_any(self.pattern, self.reading, verbose=self.verbose, doubted=False)
+        cell = opened_cell(opened, self.cell or (1, 1))
+        first, second = (", ".join(map(format_rational, vector)) for vector in cell.lattice)
+        say(
+            f"taken for a periodic sheet with {counted(cell.V, 'vertex')} in a cell and the "
+            f"translations ({first}) and ({second}); the border of the drawing counts as creases"
+        )
+        if others := other_lattices(opened.sheet):
+            texts = [f"({', '.join(map(format_rational, vector))})" for vector in others[0]]
+            say(
+                f"its border matches itself in {counted(len(others), 'other way')}, too, such as "
+                f"with {' and '.join(texts)}: a cell file says which is meant"
+            )
+        if self.cell is None and (most := repeated(opened.sheet)) != (1, 1):
+            say(f"it shows {most[0]} times {most[1]} cells: --cell {most[0]},{most[1]} takes one")
+        return cell
 
     def _streamed(self, file: Path) -> StreamedCount:
         if self.method != "auto":

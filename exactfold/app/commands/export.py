@@ -30,6 +30,7 @@ from exactfold.app.shell.patterns import in_doubt, read, read_any, tell_doubt, v
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say, tell
 from exactfold.app.verbs.choosing import choose, the_branch
 from exactfold.app.verbs.chosen import Chosen, ChosenBranch, ChosenPanels
+from exactfold.branches.counting.doubted import about
 from exactfold.branches.counting.find import find_branches
 from exactfold.branches.values.angles import require_amount
 from exactfold.branches.values.branch import Branch, GaugeText
@@ -73,6 +74,7 @@ class Wanted(ExportOptions):
             bar("writing")
             if isinstance(chosen, ChosenBranch):
                 branch = chosen.branch
+                opened = about(opened, branch)
                 try:
                     export = exported(
                         branch, amount=self.largest, title=self._title, force=self.force

@@ -20,6 +20,7 @@ from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.choosing import choose
 from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
 from exactfold.app.verbs.moving import along, along_panels, prove
+from exactfold.branches.counting.doubted import about
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, UndecidedBranchError, UsageError
 from exactfold.motion.curves.motion import Motion
@@ -64,6 +65,7 @@ class Wanted(FoldOptions):
                 say(chosen.why)
             motion: Motion | PanelMotion | FamilyMotion
             if isinstance(chosen, ChosenBranch):
+                opened = about(opened, chosen.branch)
                 try:
                     motion = self._along(chosen, bar)
                 except UndecidedBranchError as error:

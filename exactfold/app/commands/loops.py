@@ -12,6 +12,7 @@ from exactfold.app.options.reading import overruling
 from exactfold.app.shell.patterns import in_doubt, read, tell_doubt, verdict
 from exactfold.app.shell.resuming import require_file, resumable
 from exactfold.app.shell.shell import EXIT, Bar, apart, interruptible, name_of
+from exactfold.branches.counting.doubted import about
 from exactfold.branches.counting.on_dask import LOCAL
 from exactfold.branches.counting.pools import dask_pool
 from exactfold.errors import NotCountedError, UsageError
@@ -51,7 +52,7 @@ class Wanted(MotionsOptions):
         apart(self.certificate, self.file)
         with Bar("reading") as bar:
             read_sheet = read(self.file, self.reading, "motions", verbose=self.verbose)
-            pattern = read_sheet.pattern
+            pattern, opened = read_sheet.pattern, about(read_sheet.opened)
             if len(pattern.boundary) > 4:
                 raise NotCountedError(
                     "motions takes sheets with four boundary vertices, and this one has "
@@ -77,8 +78,8 @@ class Wanted(MotionsOptions):
                     replace=False,
                 )
         if self.as_json:
-            print(json.dumps(in_doubt(read_sheet.opened, loops.to_dict(name_of(self.file)))))
+            print(json.dumps(in_doubt(opened, loops.to_dict(name_of(self.file)))))
         else:
-            tell_doubt(read_sheet.opened)
+            tell_doubt(opened)
             report.show(report.motions_report(loops))
-        return EXIT[verdict(read_sheet.opened, loops.status)]
+        return EXIT[verdict(opened, loops.status)]

@@ -14,6 +14,7 @@ from exactfold.app.options.choosing import given_letters
 from exactfold.app.shell.patterns import read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.chosen import DRAWN
+from exactfold.branches.counting.doubted import nearly_among
 from exactfold.certificates.entries import write_certificate
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.boundary_result import BoundaryMatch
@@ -73,7 +74,9 @@ class Asked(MatchOptions):
             _in_reach(pattern)
             bar("signs")
             matched = match(pattern, letters, most=self.most or MOST, progress=bar)
-            if nearly := open_vertices(opened, letters):
+            nearly = open_vertices(opened, letters)
+            nearly = nearly or nearly_among((ray.branch for ray in matched), opened)
+            if nearly:
                 say(f"warning: {nearly}")
             matched = matched.about(opened.meant, nearly)
             if not matched.matches and not opened.doubt and not nearly:

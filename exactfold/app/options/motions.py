@@ -68,7 +68,8 @@ class FoldOptions(WayOptions):
         written(
             "Write the frames: to FILE.fold; as an animation to .glb, .gltf, .gif or .mp4; the end "
             "as a picture to .png; each to a file of its own, FILE_0000.obj and so on, for .obj "
-            "and .stl; or the fold angles, a row for each frame, to .csv.",
+            "and .stl; the fold angles, a row for each frame, to .csv; or a mechanism of hinged "
+            "panels for robot simulators to .mjcf (MuJoCo) or .urdf.",
             "FILE",
             "-o",
             "--output",

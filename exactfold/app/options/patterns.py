@@ -17,6 +17,7 @@ from exactfold.app.shell.parameters import (
     Pattern,
     Patterns,
     Resume,
+    cell_numbers,
     complete_method,
     direction_vector,
     distance,
@@ -92,8 +93,17 @@ class CountOptions(ReadingOptions):
         typer.Option(
             parser=direction_vector,
             metavar="X,Y",
-            help="For the cell of a periodic sheet: the vector at right angles to the axis of the "
-            "cylinder on which the sheet rolls up, as in 3,4.",
+            help="For a periodic sheet: the vector at right angles to the axis of the cylinder on "
+            "which the sheet rolls up, as in 3,4. A drawing is taken for the cell of one if its "
+            "opposite sides match.",
+        ),
+    ] = None
+    cell: Annotated[
+        tuple[int, int] | None,
+        typer.Option(
+            parser=cell_numbers,
+            metavar="I,J",
+            help="For a drawing with --direction: it shows I times J cells. Default: 1,1.",
         ),
     ] = None
     curvature: Curvature = None
@@ -123,11 +133,13 @@ class CountOptions(ReadingOptions):
             self.curvature,
             self.boundary_heights,
             self.direction,
+            self.cell,
         )
         if self.resume or any(value is not None for value in single):
             raise UsageError(
-                "--certificate, --stream, --resume, --workers, --direction, --curvature and "
-                "--boundary-heights go with one pattern, without --jsonl and without --sheet all"
+                "--certificate, --stream, --resume, --workers, --direction, --cell, --curvature "
+                "and --boundary-heights go with one pattern, without --jsonl and without "
+                "--sheet all"
             )
 
 

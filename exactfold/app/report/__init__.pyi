@@ -36,6 +36,8 @@ from exactfold.app.report.study import study_report as study_report
 from exactfold.app.report.study import table_of as table_of
 from exactfold.app.report.terminal import console as console
 from exactfold.app.report.terminal import show as show
+from exactfold.app.report.tolerance import design_report as design_report
+from exactfold.app.report.tolerance import tolerance_report as tolerance_report
 from exactfold.app.report.vertices import vertices_line as vertices_line
 from exactfold.app.report.vertices import vertices_report as vertices_report
 from exactfold.studies.report.figures import check_figures as check_figures

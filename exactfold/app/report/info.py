@@ -92,7 +92,11 @@ def panels_info(facts: PanelFacts, found: Vertices, *, exact: bool = False) -> T
             "panels, edges, folds",
             f"{len(pattern.faces)}, {len(pattern.edges)}, {len(pattern.folds)}",
         ),
-        ("folds - 3 interior vertices", f"D = {pattern.D}"),
+        *([("holes", str(len(pattern.holes)))] if pattern.holes else []),
+        (
+            f"folds - 3 interior vertices{' - 6 holes' if pattern.holes else ''}",
+            f"D = {pattern.D}",
+        ),
         ("coordinates", f"in {pattern.field_name}"),
         ("interior degrees", degrees or "none"),
         *_motion_rows(facts),

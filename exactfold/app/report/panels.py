@@ -230,7 +230,7 @@ def _notes(result: Decomposition, everything: bool) -> list[str]:
     if result.second_order is None and result.modes:
         more = "there may be others" if result.graphs is None else "lies in one of the families"
         notes.append(f"each way listed below truly folds, and {more}")
-    asked = result.drawn or result.doubt or result.graphs is not None
+    asked = result.drawn or result.doubt or result.graphs is not None or result.pattern.holes
     if result.second_order is None and result.rigid is not PROVED and not asked:
         notes.append(
             "even so, it is often known whether the sheet starts to fold with given mountains and "
@@ -303,8 +303,13 @@ def _details(result: Decomposition) -> list[str]:
     lines = []
     for part in result.parts:
         counts = "unknown" if part.second_order is None else dict(part.second_order)
+        size = len(result.pattern.vertices)
+        inner = [v for v in part.vertices if v < size]
+        holes = {(v - size) // 3 for v in part.vertices if v >= size}
+        about = f"part with vertex {inner[0]}" if inner else f"part with hole {min(holes)}"
+        more = f" and {counted(len(holes), 'hole')}" if holes else ""
         lines.append(
-            f"part with vertex {part.vertices[0]}: {counted(len(part.vertices), 'vertex')} that "
+            f"{about}: {counted(len(inner), 'vertex')}{more} that "
             f"can fold, by {part.theory}, to second order {counts}"
         )
     return lines

@@ -235,7 +235,7 @@ def moved(opened: Opened, move: Move) -> Opened:
     if isinstance(sheet, CreasePattern):
         new = CreasePattern(points, sheet.triangles)
     else:
-        new = PanelPattern(points, sheet.edges)
+        new = PanelPattern(points, sheet.edges, sheet.holes)
         if new.folds != sheet.folds or len(new.faces) != len(sheet.faces):
             raise UsageError("the vertex cannot go there: edges would cross")
         new = triangulated(new) or new

@@ -165,6 +165,14 @@ def direction_vector(text: object) -> tuple[Fraction, Fraction]:
     return x, y
 
 
+def cell_numbers(text: object) -> tuple[int, int]:
+    """How many cells a drawing shows in two directions, such as 4,2."""
+    parts = str(text).split(",")
+    if len(parts) != 2 or not all(part.strip().isdecimal() and int(part) > 0 for part in parts):
+        raise typer.BadParameter(f"{str(text)!r} is not two numbers of cells, such as 4,2")
+    return int(parts[0]), int(parts[1])
+
+
 def noise_level(text: object) -> Fraction:
     """A noise level, which is positive; 0 is what --snap exact asks for."""
     try:

@@ -95,7 +95,11 @@ def verdict(opened: Opened, status: Verdict) -> Verdict:
 def tell_doubt(opened: Opened) -> None:
     """Print, above an answer that holds for the digits of the sheet only, that it does."""
     if opened.doubt:
-        tell("UNDECIDED for the sheet that was meant; for the digits as written (--snap exact):\n")
+        why = f", as {opened.nearly}" if opened.nearly else ""  # the others are said before
+        tell(
+            f"UNDECIDED for the sheet that was meant{why}; for the digits as written (--snap "
+            "exact):\n"
+        )
 
 
 def in_doubt(opened: Opened, document: Mapping[str, object]) -> Mapping[str, object]:

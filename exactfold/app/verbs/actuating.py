@@ -10,8 +10,10 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import UNDECIDED
 from exactfold.app.verbs.choosing import choose, the_branch
 from exactfold.app.verbs.chosen import Choice, ChosenPanels, Letters
+from exactfold.branches.counting.doubted import about
 from exactfold.branches.counting.find import BranchFinder, Signs
 from exactfold.design.actuation.actuate import actuate as actuate_branch
+from exactfold.design.actuation.result import Actuation
 from exactfold.errors import NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -20,7 +22,6 @@ from exactfold.pattern.opening import Opened
 if TYPE_CHECKING:
     from exactfold.design.actuation.hinges import Hinges
     from exactfold.design.actuation.panels.result import PanelActuation
-    from exactfold.design.actuation.result import Actuation
     from exactfold.exact.numbers import RationalLike
 
 Actuated: TypeAlias = "Actuation | PanelActuation"
@@ -41,7 +42,8 @@ def actuate(
     """Find torques on the folds that drive a sheet along one way and no other.
 
     The way is named as in `branch` for a triangulated sheet, and by `way` or `letters` for one of
-    rigid panels. If `creases` is given, at most so many folds have torques. If `torques`, exact
+    rigid panels; letters of the other side of a branch name this branch, and the opposite torques
+    drive that side. If `creases` is given, at most so many folds have torques. If `torques`, exact
     numbers by fold, are given, they are judged instead. `hinges` give torques in N mm
     (docs/actuation.md). The result says, too, whether the way is self-foldable. If the digits
     of a drawing are in doubt, the answer is UNDECIDED, and `reason` says why.
@@ -60,6 +62,8 @@ def actuate(
     found = actuate_opened(
         opened, Choice(way, signs, up, letters), creases, torques, hinges, progress
     )
+    if isinstance(found, Actuation):
+        opened = about(opened, found.branch)
     if not opened.doubt:
         return found
     found = replace(found, self_foldable=UNDECIDED)
@@ -111,8 +115,11 @@ def actuate_opened(
 def _signs(
     opened: Opened, pattern: CreasePattern, choice: Choice, progress: Progress | None
 ) -> dict[int, int]:
-    """The vertex signs of the side of a branch that is to be driven."""
+    """The vertex signs of the branch that is to be driven, as it is listed.
+
+    Letters of its other side name it, too: the opposite vertex signs would be those of another
+    branch, as two branches have opposite signs.
+    """
     if choice.way is None and choice.letters is None:
         return BranchFinder(pattern).signs(choice.signs, choice.up)
-    chosen = the_branch(opened, choice, progress, needs="actuate")
-    return {v: chosen.side * sign for v, sign in chosen.branch.vertex_signs.items()}
+    return dict(the_branch(opened, choice, progress, needs="actuate").branch.vertex_signs)

@@ -15,6 +15,7 @@ from exactfold.checker.command import refusal
 from exactfold.checker.core.kinds import LineKind, Verified
 from exactfold.checker.core.parts import Engine
 from exactfold.checker.core.reading import UnfinishedError, plain
+from exactfold.checker.motion.loops import LOOPS
 from exactfold.errors import CertificateFormatError, UnreadableFileError, WorkerDiedError
 
 if TYPE_CHECKING:
@@ -116,6 +117,10 @@ def quickest(kind: LineKind[Any]) -> Engine:
         )  # imported here: only this needs NumPy
 
         return FLOATS
+    if kind is LOOPS:
+        from exactfold.motion.loops.check import TUBES_IN_FLOATS
+
+        return TUBES_IN_FLOATS
     from exactfold.certificates.sharing import shared
 
     return kind.engine._replace(share=shared)

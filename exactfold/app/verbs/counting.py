@@ -14,12 +14,14 @@ from exactfold._support.progress import Progress
 from exactfold.branches.counting.doubted import doubted_branch
 from exactfold.branches.counting.registry import choose
 from exactfold.branches.counting.ways import count_opened, decompose_opened
-from exactfold.errors import UsageError
+from exactfold.errors import NotApplicableError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.data import CELLS
 from exactfold.pattern.drawing.drawing import Drawing, Snap, Steps
 from exactfold.pattern.fold import FoldFile
 from exactfold.pattern.loading import PatternLike, open_sheet
-from exactfold.pattern.opening import Opened
+from exactfold.pattern.opening import Opened, is_cell_file
+from exactfold.pattern.periodic.formats import FORMAT, LATTICE_KEY, is_cell
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 from exactfold.pattern.reading import Reading
 
@@ -120,6 +122,7 @@ def count(
     sheet: PeriodicPattern | PatternLike,
     *,
     direction: Sequence[RationalLike],
+    limit: float | None = ...,
     progress: Progress | None = ...,
 ) -> PeriodicCount: ...
 @overload
@@ -162,8 +165,8 @@ def count(
     raises an error, the error is its result, and the others go on.
 
     A periodic sheet (`PeriodicPattern`, or anything that `read_cell` takes) is counted for one
-    `direction`, and the result is a `PeriodicCount`; of the other arguments only `progress` goes
-    with it.
+    `direction`, and the result is a `PeriodicCount`; of the other arguments only `limit` and
+    `progress` go with it. Any other sheet is then one cell of a periodic sheet: see `drawn_cell`.
 
     Raises `InputError` for anything that is not a sheet, `UsageError` for an unknown method, for
     several workers for one sheet, and for a periodic sheet without a direction. UNDECIDED does not
@@ -184,11 +187,11 @@ def count(
     if direction is not None or isinstance(sheet, PeriodicPattern):
         if direction is None:
             raise UsageError("a periodic sheet is counted for one `direction`, such as (3, 4)")
-        if (method, seed, snap, number, workers, limit) != ("auto", 0, None, None, 1, LIMIT):
-            raise UsageError("only `progress` goes with `direction`")
+        if (method, seed, snap, number, workers) != ("auto", 0, None, None, 1):
+            raise UsageError("only `limit` and `progress` go with `direction`")
         from exactfold.branches.periodic.counting import count_periodic
 
-        return count_periodic(sheet, direction, progress=progress)
+        return count_periodic(_cell(sheet), direction, limit=limit, progress=progress)
     if _is_one(sheet):
         if workers != 1:
             raise UsageError(
@@ -209,6 +212,35 @@ def count(
         limit=limit,
         counting=counted_with_letters,
     )
+
+
+def _cell(sheet: object) -> object:
+    """A cell unchanged; any other sheet is opened, and its border glued together."""
+    if isinstance(sheet, PeriodicPattern) or _shows_cell(sheet):
+        return sheet
+    return opened_cell(open_sheet(cast("PatternLike", sheet)))
+
+
+def _shows_cell(sheet: object) -> bool:
+    if isinstance(sheet, Mapping):
+        return sheet.get("format") == FORMAT or LATTICE_KEY in sheet
+    if isinstance(sheet, str) and sheet.lstrip().startswith("{"):
+        return is_cell(sheet.encode())
+    return isinstance(sheet, str | PathLike) and (sheet in CELLS or is_cell_file(sheet))
+
+
+def opened_cell(opened: Opened, cells: tuple[int, int] = (1, 1)) -> PeriodicPattern:
+    """The cell that a sheet shows; raises the errors of `drawn_cell`.
+
+    Raises `NotApplicableError` for a drawing whose digits are in doubt.
+    """
+    from exactfold.pattern.periodic.drawn import drawn_cell
+
+    if opened.doubt:
+        raise NotApplicableError(
+            f"{opened.doubt}; with --snap exact, the digits as written are the cell"
+        )
+    return drawn_cell(opened.sheet, cells)
 
 
 def _counted(
@@ -236,7 +268,12 @@ def counted_with_letters(
     result = count_opened(
         opened, method=method, seed=seed, progress=progress, clock=clock.share(3 / 4)
     )
-    if isinstance(result, BranchCount) or result.second_order is not None:
+    if isinstance(result, BranchCount):
+        if not result.doubt:
+            return result
+        known: BranchCount | Decomposition = _with_proposal(result, opened, clock)
+        return replace(known, seconds=time.perf_counter() - start)
+    if result.second_order is not None:
         return result
     from exactfold.design.panels.drawn import with_drawn
 
@@ -246,16 +283,27 @@ def counted_with_letters(
     return replace(known, seconds=time.perf_counter() - start)
 
 
-def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition:
+@overload
+def _with_proposal(result: BranchCount, opened: Opened, clock: Clock) -> BranchCount: ...
+@overload
+def _with_proposal(result: Decomposition, opened: Opened, clock: Clock) -> Decomposition: ...
+def _with_proposal(
+    result: BranchCount | Decomposition, opened: Opened, clock: Clock
+) -> BranchCount | Decomposition:
     """The answer, with an exact sheet that may have been meant, and what is known of it.
 
     Sheets are looked for during five seconds, and their answer takes five more at most.
     """
+    from exactfold.branches.values.result import BranchCount
     from exactfold.panels.result import Proposal
     from exactfold.pattern.meaning import proposals
 
-    loops = [miss.off for miss in result.known.nearly_closing]
-    made = proposals(opened, _PROPOSING, loops)
+    if isinstance(result, BranchCount):
+        near = result.known.nearly_flat
+        off = [] if near is None else [near.off]
+    else:
+        off = [miss.off for miss in result.known.nearly_closing]
+    made = proposals(opened, _PROPOSING, off)
     if not made or clock.passed:
         return result
     (noise, sheet), *rest = made

@@ -9,6 +9,7 @@ from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
 from exactfold.app.verbs.chosen import Letters, asked_letters
+from exactfold.branches.counting.doubted import nearly_among
 from exactfold.design.assignments.boundary_match import can_pop, match_boundary
 from exactfold.design.assignments.search import match as match_branches
 from exactfold.design.panels.match import match_panels
@@ -68,6 +69,7 @@ def match(
     if pattern.interior and pattern.Ve == 3:
         raise NotCountedError("this sheet is rigid: it has three vertices on its boundary")
     found = match_branches(pattern, wanted, progress=progress, **_at_most(most))
+    nearly = nearly or nearly_among((ray.branch for ray in found), opened)
     return found.about(opened.meant, nearly)
 
 

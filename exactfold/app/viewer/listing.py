@@ -30,6 +30,7 @@ from exactfold.app.viewer.ways import (
     family_way,
     panel_way,
 )
+from exactfold.branches.counting.doubted import nearly_among
 from exactfold.branches.counting.find import branch_finder
 from exactfold.branches.counting.ways import count_opened, decompose_opened
 from exactfold.design.assignments.boundary_match import match_boundary
@@ -143,7 +144,8 @@ def listed_ways(
                     for k, branch in enumerate(known.branches, 1)
                 ]
                 shown = _with_drawn_branch(opened, ways, add=branches is None and not brief)
-                return Listed(*shown, _branch_facts(known), follower)
+                near = nearly_among(known.branches, opened) if known.count is None else ""
+                return Listed(*shown, _branch_facts(known, opened.doubt or near), follower)
         return _panels(opened, only, frames, proving, progress, clock, brief)
     except (InputError, UsageError, WorkerDiedError):
         raise
@@ -253,7 +255,7 @@ def _freedom(known_branches: _Branches) -> str:
     return f"degrees of freedom: {dimension}"
 
 
-def _branch_facts(known_branches: _Branches) -> Facts:
+def _branch_facts(known_branches: _Branches, doubt: str) -> Facts:
     if known_branches.count is not None:
         from exactfold.app.report.count import answer
 
@@ -272,10 +274,11 @@ def _branch_facts(known_branches: _Branches) -> Facts:
         }
     vertices = counted(len(known_branches.pattern.foldable_vertices), "foldable vertex")
     proved = all(branch.status is PROVED for branch in known_branches.branches)
+    number = f"{counted(len(known_branches.branches), 'branch')} of a sheet with {vertices}"
     return {
         "kind": "branches",
-        "answer": f"{counted(len(known_branches.branches), 'branch')} of a sheet with {vertices}",
-        "status": str(PROVED if proved else UNDECIDED),
+        "answer": f"{number}, UNDECIDED for the sheet that was meant: {doubt}" if doubt else number,
+        "status": str(PROVED if proved and not doubt else UNDECIDED),
         "complete": False,
         "reason": "each branch was found by its vertex signs, and "
         f"{'all are' if proved else 'not all are'} proved; the branches of the sheet were not "

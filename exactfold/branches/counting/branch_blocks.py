@@ -12,9 +12,10 @@ Completeness and Nappes).
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,11 +28,16 @@ from exactfold.branches.values.roots import BoxRoot
 from exactfold.checker.core.limits import MOST_UNKNOWNS
 from exactfold.errors import NotApplicableError
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.rounding import half_step
 from exactfold.rigidity.equations.problem import Problem
+from exactfold.rigidity.equations.sign_rows import Functionals
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.float_krawczyk import UNPROVED, FloatBoxes, FloatKrawczyk, FloatSigns
 from exactfold.solve.numeric.dense_newton import NappeSystem, SweptPoints
 from exactfold.solve.numeric.nappe_newton import sign_vectors
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.nearly_flat import Bends
 
 BLOCK = 1024
 """Sign vectors in a block. An interruption loses at most one block."""
@@ -40,6 +46,8 @@ BITS = 44
 """Bits of the centres: enough for every test and for nine digits of a height, yet few bytes."""
 
 _WIDEST = 52
+_UNCLEAR = 1e-12
+"""Floats cannot tell that a fold with a smaller share of the largest angle is not flat."""
 
 
 @dataclass(frozen=True)
@@ -159,7 +167,58 @@ class BranchBlocks:
                 "certify": certified - start,
                 "exactly": time.process_time() - certified,
             },
+            self._bends(ends.points, exact, unproved) if self._rounded else None,
         )
+
+    def bends(self, index: int) -> Bends | None:
+        """The angles of folds in a block that is proved already; None if coordinates are exact.
+
+        They are those at `ends`, which are close to the branches. Branches on which floats cannot
+        tell a fold from a flat one are proved again.
+        """
+        if not self._rounded:
+            return None
+        points = self.ends(index).points
+        self._solved.pop(index)
+        angles = self._angles(points)
+        unclear = (angles < _UNCLEAR * angles.max(axis=1, keepdims=True)).any(axis=1)
+        signs = sign_vectors(index * self.block_size, self.block_size, self.size).astype(int)
+        again = {
+            j: self._prover.prove(signs[j].tolist(), points[j])
+            for j in np.flatnonzero(unclear).tolist()
+        }
+        exact = {j: root for j, root in again.items() if isinstance(root, ExactRoot)}
+        return self._bends(points, exact, again.keys() - exact.keys())
+
+    @cached_property
+    def _rounded(self) -> bool:
+        """Whether coordinates are decimals that may be rounded."""
+        return half_step(self.problem.pattern.vertices) > 0
+
+    @cached_property
+    def _bending(self) -> FloatArray:
+        """The angles of the folds of the sheet as rows on (x, 1)."""
+        heights = Functionals(self.problem.chart).heights
+        rows = np.array([[float(c) for c in row] for _, row in sorted(heights.items())])
+        from exactfold.branches.values.nearly_flat import angles_on  # exact sheets do without it
+
+        return angles_on(self.problem.sheet, rows)
+
+    def _angles(self, points: FloatArray) -> FloatArray:
+        """The sizes of the first-order angles of all folds, up to a factor for each point."""
+        rows = self._bending
+        return np.asarray(np.abs(points @ rows[:, :-1].T + rows[:, -1]))
+
+    def _bends(
+        self, points: FloatArray, exact: Mapping[int, ExactRoot], left_out: Iterable[int]
+    ) -> Bends:
+        from exactfold.branches.values.nearly_flat import Bends
+
+        angles = self._angles(points)
+        for j, root in exact.items():
+            angles[j, [k for k, letter in enumerate(root.assignment) if letter in "FU"]] = 0.0
+        angles[list(left_out)] = 0.0
+        return Bends.of(self.problem.sheet, angles)
 
     def _root(self, box: IsolatingBox) -> BoxRoot:
         return BoxRoot(box, system=self.problem.chart.system)

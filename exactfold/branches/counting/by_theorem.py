@@ -78,7 +78,9 @@ def graphs_over_boundary(sheet: PanelPattern) -> int | None:
     from exactfold.exact.surds import sign  # imported here: branches do not need them
     from exactfold.pattern.panel_pattern import EnclosedPattern
 
-    if isinstance(sheet, EnclosedPattern) or any(len(face) != 3 for face in sheet.faces):
+    if sheet.holes or isinstance(sheet, EnclosedPattern):
+        return None
+    if any(len(face) != 3 for face in sheet.faces):
         return None
     following: dict[int, dict[int, int]] = {}
     triangles: list[Triangle] = []

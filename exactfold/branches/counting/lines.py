@@ -18,6 +18,7 @@ If this fails, too, the count is undecided, for the reason that was found in the
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED
@@ -33,6 +34,9 @@ from exactfold.rigidity.equations.branch_system import BranchSystem, notch_chart
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.solve.numeric.candidates import Candidates
 from exactfold.solve.numeric.newton import candidates_of
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.nearly_flat import Bends
 
 _MEET = 9
 """Two ends that agree to this many digits count as one end, at a multiple root."""
@@ -83,15 +87,20 @@ def _collected(
     stage, count = attempt.stage("certifying"), branch_blocks.block_size
     branches: list[Branch] = []
     proved: list[str] = []
+    bends: Bends | None = None
     for block, line in in_this_process(branch_blocks, range(branch_blocks.blocks)):
         if not block.is_decided:
             return None
         branches += branch_blocks.branches(block)
+        if block.bends is not None:
+            bends = block.bends if bends is None else bends + block.bends
         proved.append(line)
         stage(len(proved) * count, attempt.total)
     branches.sort(key=Branch.sort_key)
     return attempt.isolated(
-        attempt.undecided("", branches=tuple(branches), settings={**ends.settings, "lost": 0}),
+        attempt.undecided(
+            "", branches=tuple(branches), bends=bends, settings={**ends.settings, "lost": 0}
+        ),
         real=attempt.total,
         nonreal=0,
         lines=compact_lines(branch_blocks.problem, count, proved),

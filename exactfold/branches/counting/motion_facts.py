@@ -16,7 +16,7 @@ from exactfold._support.documents import (
     VertexText,
 )
 from exactfold._support.plurals import agreeing, counted
-from exactfold.panels.vertex.stars import stars
+from exactfold.panels.vertex.holes import conditions, free_folds, vertices_of
 from exactfold.pattern.described import PanelsDocument, described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.rigidity.facts import PatternFactsDocument
@@ -30,7 +30,7 @@ class PanelKeys(TypedDict):
     flat_folds: list[FoldText]
     free_folds: list[FoldText]
     parts: list[Several[Natural]]
-    """Each part lists interior vertices that are connected by folds that may fold."""
+    """Each part lists interior vertices, and those of holes, that folds that may fold connect."""
 
 
 class PanelFactsDocument(PanelKeys):
@@ -67,8 +67,9 @@ class PanelFacts:
     """Facts about a sheet of rigid panels that need no solving.
 
     `degrees` has the number of folds at each interior vertex. The folds `flat` stay flat in every
-    real motion. The folds `free` have both ends on the boundary. All other folds may fold:
-    each of `parts` lists vertices that such folds connect, and `moving` has their number at each.
+    real motion. The folds `free` have both ends on the boundary; if the sheet has holes, it falls
+    apart without each of them. All other folds may fold: each of `parts` lists vertices that such
+    folds connect, also those of holes, and `moving` has their number at each.
     """
 
     pattern: PanelPattern
@@ -91,14 +92,20 @@ class PanelFacts:
                 return "rigid: no fold can fold while the panels stay rigid"
             each = "folds" if len(self.free) == 1 else "each folds"
             return f"{counted(len(self.free), 'fold')} from boundary to boundary, {each} freely"
-        large = sum(any(self.moving[v] > 4 for v in part) for part in self.parts)
+        round_holes = {v for hole in self.pattern.holes for v in hole}
+        large = sum(
+            any(v in round_holes or self.moving[v] > 4 for v in part) for part in self.parts
+        )
         whole = f"{counted(len(self.parts), 'part')} with vertices that may fold"
+        if round_holes:
+            whole = f"{counted(len(self.parts), 'part')} with vertices or holes that may fold"
+        where = f"{'holes or ' if round_holes else ''}vertices of more than four folds"
         if not large:
             return (
                 f"{whole}, at most four folds at each: all ways to fold, by the structure theorem"
             )
         return (
-            f"{whole}, {large} of them with vertices of more than four folds: all ways to fold by "
+            f"{whole}, {large} of them with {where}: all ways to fold by "
             "splitting linear spaces, where few enough motions are possible to first order"
         )
 
@@ -160,15 +167,14 @@ def panel_facts(pattern: PanelPattern) -> PanelFacts:
     """
     from exactfold.panels.decomposition import groups_of  # it loads NumPy
 
-    moving = stars(pattern)
-    interior = set(pattern.interior)
-    free = tuple(edge for edge in pattern.folds if not interior.intersection(edge))
+    moving = conditions(pattern)
+    free = free_folds(pattern)
     active = {edge for star in moving.values() for edge in star.folds}
     return PanelFacts(
         pattern,
         {v: len(near) for v, near in pattern.stars.items()},
         tuple(edge for edge in pattern.folds if edge not in active and edge not in free),
         free,
-        tuple(groups_of(moving)),
+        tuple(vertices_of(pattern, group) for group in groups_of(moving)),
         {v: len(star.folds) for v, star in moving.items()},
     )

@@ -20,6 +20,7 @@ from exactfold.branches.counting.branch_blocks import BranchBlocks
 from exactfold.branches.counting.collect import check_countable, count_branches
 from exactfold.branches.counting.engines import Engine, processes
 from exactfold.branches.values.blocks import OpenEnd, ProvedBlock
+from exactfold.branches.values.nearly_flat import Bends
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.journal import Journal
 from exactfold.checker.branches.compact import COMPACT
@@ -167,6 +168,8 @@ def stream_branches(
         journal = Journal(path, header, replace=replace)
     resumed = journal.blocks
     left = range(resumed, branch_blocks.blocks)
+    for index in range(resumed):  # the file does not have the angles of folds
+        tally.measure(branch_blocks.bends(index))
     with closing(journal), closing((engine or processes(workers))(branch_blocks, left)) as blocks:
         for block, line in blocks:
             tally.add(branch_blocks, block)
@@ -185,6 +188,7 @@ def stream_branches(
             count = _handed_over(count, seed, progress)
     given = {f.name: getattr(count, f.name) for f in fields(BranchCount)}
     given["seconds"] = time.perf_counter() - start
+    given["bends"] = count.bends or tally.bends
     return StreamedCount(
         **given,
         path=journal.path,
@@ -267,6 +271,7 @@ class Tally:
         self.open_roots: list[OpenRoot] = []
         self.unproved = self.exact = self.steps = 0
         self.seconds: Counter[str] = Counter()
+        self.bends: Bends | None = None
 
     def add(self, branch_blocks: BranchBlocks, block: ProvedBlock) -> None:
         """Add one block to the sums."""
@@ -274,10 +279,16 @@ class Tally:
         self.unproved += len(block.open)
         self.steps += block.steps
         self.seconds.update(block.seconds)
+        self.measure(block.bends)
         for j, end in block.open.items():
             if len(self.open_roots) < MOST_LISTED:
                 number = block.index * branch_blocks.block_size + j
                 self.open_roots.append(open_root(branch_blocks, number, end))
+
+    def measure(self, bends: Bends | None) -> None:
+        """Add the angles of folds in one block; None if coordinates are exact."""
+        if bends is not None:
+            self.bends = bends if self.bends is None else self.bends + bends
 
     def culprits(self, foldable: Sequence[int]) -> str:
         """Why sign vectors are open, in words; `foldable` names the vertices of their signs."""

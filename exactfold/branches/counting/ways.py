@@ -10,7 +10,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED
 from exactfold.branches.counting.by_theorem import graphs_over_boundary
 from exactfold.branches.counting.collect import count_branches, not_convex
-from exactfold.branches.counting.doubted import doubted
+from exactfold.branches.counting.doubted import about, doubted
 from exactfold.branches.counting.registry import METHODS, choose
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -100,9 +100,9 @@ def _is_fast(pattern: PanelPattern) -> bool:
     That is so if at most 100 vertices may fold, each with at most four folds, or at most 30
     vertices with any number of folds.
     """
-    from exactfold.panels.vertex.stars import stars
+    from exactfold.panels.vertex.holes import conditions
 
-    moving = stars(pattern)
+    moving = conditions(pattern)
     few = _MOST_MODES if all(len(star.folds) <= 4 for star in moving.values()) else _MOST_SPACES
     return len(moving) <= few
 
@@ -169,6 +169,7 @@ def decompose_opened(
 
     Without a clock the search ends after 60 seconds.
     """
+    opened = about(opened)
     return doubted(_decomposed(opened, progress, clock or Clock(LIMIT)), opened)
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from exactfold._support.clock import Clock
 from exactfold._support.plurals import agreeing
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -29,7 +30,11 @@ _MOST_OPEN = 1000
 
 
 def count_periodic(
-    cell: object, direction: Sequence[RationalLike], *, progress: Progress | None = None
+    cell: object,
+    direction: Sequence[RationalLike],
+    *,
+    limit: float | None = None,
+    progress: Progress | None = None,
 ) -> PeriodicCount:
     """The proved branches of a periodic sheet that rolls up across one direction, and its pleats.
 
@@ -39,7 +44,7 @@ def count_periodic(
     Without pleats there are 2^(V - 1) with multiplicity, one for each pair of opposite vertex sign
     vectors, each 2^(number of flat vertices) times (docs/tessellations.md, Theorem 16).
     Newton's method proposes a ray for each sign vector, and Krawczyk's test, or linear algebra over
-    Q, proves it.
+    Q, proves it. After `limit` seconds no exact test or linear algebra begins.
 
     Raises the errors of `read_cell`, `UsageError` for a bad direction, and `NotCountedError` for a
     cell of more than 20 vertices. UNDECIDED does not mean that the count is unusual.
@@ -48,7 +53,7 @@ def count_periodic(
     >>> result.status, result.distinct, result.with_multiplicity, result.pleats
     (<Verdict.PROVED: 'proved'>, 8, 8, ())
     """
-    start = time.perf_counter()
+    start, clock = time.perf_counter(), Clock(limit)
     problem = PeriodicProblem.of(as_cell(cell), direction)
     if problem.sheet.V > MOST:
         raise NotCountedError(
@@ -58,28 +63,35 @@ def count_periodic(
     if progress is not None:
         progress("solving", 0, 0)
     rays = PeriodicRays(problem)
-    proved = prove_rays(problem, rays.rays(), rays.signs)
+    proved = prove_rays(problem, rays.rays(), rays.signs, clock)
     missing = sorted(set(range(len(rays.signs))) - proved.keys())
-    if missing:
-        again = prove_rays(problem, rays.sharper(np.array(missing)), rays.signs[missing])
+    if missing and not clock.passed:
+        sharper = rays.sharper(np.array(missing))
+        again = prove_rays(problem, sharper, rays.signs[missing], clock)
         proved |= {missing[row]: replace(ray, row=missing[row]) for row, ray in again.items()}
         missing = sorted(set(missing) - proved.keys())
-    covers = _covered(problem, rays, missing) if missing else []
+    covers = _covered(problem, rays, missing, clock) if missing and not clock.passed else []
     result = _result(problem, rays, proved, covers)
-    if result.status is not PROVED:
+    if result.status is not PROVED and not clock.passed:
         exact = exact_rays(problem)
         if exact is not None:
             result = _of_exact(problem, exact)
+    if result.status is not PROVED and clock.passed:
+        result = replace(result, reason=f"{result.reason} after {clock.limit:g} seconds")
     return replace(result, seconds=time.perf_counter() - start)
 
 
-def _covered(problem: PeriodicProblem, rays: PeriodicRays, missing: Sequence[int]) -> list[Cover]:
+def _covered(
+    problem: PeriodicProblem, rays: PeriodicRays, missing: Sequence[int], clock: Clock
+) -> list[Cover]:
     """Spaces that hold the cones of the missing sign vectors, as far as they are found."""
     spaces = Spaces(problem)
     covers: list[Cover] = []
     with np.errstate(all="ignore"):
         limits = rays.limits(np.array(missing))
         for row, ray in zip(missing, limits, strict=True):
+            if clock.passed:
+                break
             if any(covers_signs(cover, rays.signs[row].tolist()) for cover in covers):
                 continue
             cover = spaces.cover(ray) if np.isfinite(ray).all() else None

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold._support.clock import Clock
 from exactfold.branches.values.known_roots import FEW, zero_in
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import AlgebraicRoot, BoxRoot
@@ -67,10 +68,13 @@ class RayChart:
         for name, value in known.items():
             object.__setattr__(self, name, value)
 
-    def proved(self, rows: IndexArray, rays: FloatArray, signs: FloatArray) -> Iterator[Ray]:
+    def proved(
+        self, rows: IndexArray, rays: FloatArray, signs: FloatArray, clock: Clock
+    ) -> Iterator[Ray]:
         """The rays that boxes prove to be simple, with these signs and with b other than 0.
 
-        `rays` has shape (m, n + 1), and `rows` are the numbers of its rows.
+        `rays` has shape (m, n + 1), and `rows` are the numbers of its rows. When the time is over,
+        no exact tests are begun.
         """
         points = np.delete(rays, self.place, axis=1) / rays[:, self.place, None]
         side = np.sign(rays[:, self.place]).astype(np.int8)
@@ -88,6 +92,8 @@ class RayChart:
         names = list(map(tuple, signs.astype(int).tolist()))
         for k, row in enumerate(rows.tolist()):
             if not good[k]:
+                if clock.passed:
+                    continue
                 ray = self._exactly(row, points[k], int(side[k]), names[k])
                 if ray is not None:
                     yield self._lettered(ray)
@@ -141,7 +147,9 @@ class RayChart:
         return replace(ray, letters="".join(letters))
 
 
-def prove_rays(problem: PeriodicProblem, rays: FloatArray, signs: FloatArray) -> dict[int, Ray]:
+def prove_rays(
+    problem: PeriodicProblem, rays: FloatArray, signs: FloatArray, clock: Clock
+) -> dict[int, Ray]:
     """The proved simple rays by the number of their sign vector, from one candidate for each.
 
     The chart of a ray is that of its largest entry. A ray that is missing may be multiple, have
@@ -153,6 +161,6 @@ def prove_rays(problem: PeriodicProblem, rays: FloatArray, signs: FloatArray) ->
     for place in np.unique(places).tolist():
         rows = usable[places == place]
         chart = RayChart(problem, place)
-        for ray in chart.proved(rows, rays[rows], signs[rows]):
+        for ray in chart.proved(rows, rays[rows], signs[rows], clock):
             found[ray.row] = ray
     return found

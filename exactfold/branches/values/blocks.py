@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from exactfold._support.arrays import BoolArray
 from exactfold.solve.certify.box import IsolatingBox
 from exactfold.solve.certify.float_krawczyk import FloatBoxes
+
+if TYPE_CHECKING:
+    from exactfold.branches.values.nearly_flat import Bends
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,8 @@ class ProvedBlock:
 
     A row is proved by its float box, or by an entry of `exact`, or it is open with a reason. For a
     float box, `valleys` says which folds of the sheet are valleys; the others are mountains.
-    `seconds` is processor time by stage. `steps` is the number of Newton steps.
+    `seconds` is processor time by stage. `steps` is the number of Newton steps. `bends` has the
+    angles of folds if coordinates may be rounded; those of open rows and folds are left out.
     """
 
     index: int
@@ -49,6 +54,7 @@ class ProvedBlock:
     open: Mapping[int, OpenEnd]
     steps: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
+    bends: Bends | None = None
 
     @property
     def is_decided(self) -> bool:

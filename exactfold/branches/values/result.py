@@ -19,6 +19,7 @@ from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import near_degenerate, warnings
+from exactfold.pattern.rounding import half_step
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.rigid_triangles import RigidTriangle
 
@@ -31,8 +32,9 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
         LetteredWay,
         Power,
     )
+    from exactfold.branches.values.nearly_flat import Bends, NearlyFlat
     from exactfold.panels.count_document import AsWrittenDocument, MotionKeys, OfDigits
-    from exactfold.panels.result import Decomposition
+    from exactfold.panels.result import Decomposition, Proposal
     from exactfold.pattern.meant import Meant
     from exactfold.pattern.opening import ReadDocument
     from exactfold.solve.certify.algebraic import AlgebraicProof
@@ -98,7 +100,9 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     `meant` says what was inferred if the digits of the drawing are inexact, and `as_written` is the
     answer for these digits alone. If `doubt` says why an answer would hold for the digits of the
-    sheet only, the status is UNDECIDED, and `as_written` has that answer.
+    sheet only, the status is UNDECIDED, and `as_written` has that answer; `proposal` is then a
+    sheet that may have been meant, if one was looked for and found. `bends` has the angles of folds
+    that were measured during the proof.
 
     A certificate is written from `proof`. `open_questions` says what is missing; if the status is
     PROVED, it names folds with the letter "U". `letters` are those of the file, by fold; it is
@@ -131,6 +135,8 @@ class BranchCount(Page, Ways[Branch], Certified):
     meant: Meant | None = None
     doubt: str = ""
     as_written: OfDigits | None = None
+    proposal: Proposal | None = None
+    bends: Bends | None = field(default=None, repr=False, compare=False)
     seconds: float = field(default=0.0, compare=False)
 
     WRITER: ClassVar = "exactfold.branches.certificates.listing:certificate"
@@ -188,7 +194,26 @@ class BranchCount(Page, Ways[Branch], Certified):
         near_degeneracy = near_degenerate(self.pattern)
         if near_degeneracy is None and self.families is not None:
             return self.families.warning
-        return None if near_degeneracy is None else near_degeneracy.text
+        near = near_degeneracy or self.nearly_flat
+        return None if near is None else near.text
+
+    @cached_property
+    def nearly_flat(self) -> NearlyFlat | None:
+        """Folds that are flatter on some branches than chance explains, though not flat.
+
+        None if there are none, or if the coordinates are no decimals that may be rounded.
+        """
+        if self.bends is not None:
+            sheet, labels = self.pattern.without_rigid_parts()
+            near = self.bends.nearly_flat(sheet)
+            return None if near is None else near.labelled(labels)
+        inferred = self.meant is not None and self.meant.inferred
+        if not self.branches or not (inferred or half_step(self.pattern.vertices)):
+            return None
+        from exactfold.branches.values.nearly_flat import bends_of  # exact sheets do without it
+
+        bends = bends_of(self.branches)
+        return None if bends is None else bends.nearly_flat(self.pattern)
 
     @property
     def by(self) -> str | None:
@@ -263,7 +288,7 @@ class BranchCount(Page, Ways[Branch], Certified):
         }
 
     def _keys(self, certificate: str | None, name: str | None) -> BranchCountKeys:
-        bounds = self.true_bounds
+        bounds, near = self.true_bounds, self.known.nearly_flat
         return {
             "format": "exactfold count result",
             "version": 2,
@@ -276,7 +301,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "dimension": self.dimension,
             "degree": None if self.degree is None else _number(self.degree),
             "certificate": certificate,
-            "warnings": warnings(self.pattern),
+            "warnings": warnings(self.pattern) or ([near.to_dict()] if near else []),
             "seconds": round(self.seconds, 3),
             "open_questions": list(self.open_questions),
             "settings": dict(self.settings),
@@ -319,7 +344,7 @@ class BranchCount(Page, Ways[Branch], Certified):
             "components": None,
             "freedom": None,
             "drawn": None,
-            "proposal": None,
+            "proposal": None if self.proposal is None else self.proposal.to_dict(),
             "modes_count": None,
             "modes": [],
             "way_list": [],

@@ -30,7 +30,6 @@ from ..core.reading import (
     keys,
     keys_of,
     natural,
-    parse_rational,
     refusing,
     require,
     same,
@@ -38,7 +37,7 @@ from ..core.reading import (
     text_of,
 )
 from ..panels.reduction import BITS, reduced
-from ..panels.unit_motions import Vector, largest, plus, power
+from ..panels.unit_motions import Torques, Vector, plus, power, weight_of
 from ..sheets.boxes import Box, check_isolated
 from ..sheets.equations import BranchSystem, read_chart
 from ..sheets.sheet import Edge, Sheet, read_sheet
@@ -113,16 +112,7 @@ class _Driven:
         rows = {fold: _density_row(self.system, fold) for fold in emptied.folds}
         self.units = [_unit(box, rows, lengths) for box in self.boxes]
         self.target = _turned(self.units[self.place], self.side)
-        values = items(claims["torques"], "torques", len(sheet.folds))
-        self.torques = dict(zip(sheet.folds, map(parse_rational, values), strict=True))
-        self.limit = parse_rational(claims["limit"])
-        small = all(abs(torque) <= self.limit for torque in self.torques.values())
-        require(small, "a torque is larger than the limit")
-        self.most: int | None = None
-        if claims["creases"] is not None:
-            self.most = natural(claims["creases"], "creases")
-            number = sum(torque != 0 for torque in self.torques.values())
-            require(number <= self.most, f"{number} folds are driven, more than {self.most}")
+        self.torques = Torques(sheet.folds, claims)
 
     def check_names(self) -> None:
         """Refuse signs and letters that the ray does not have."""
@@ -140,15 +130,10 @@ class _Driven:
 
     def check_margin(self) -> None:
         """Refuse a margin that some rival contradicts."""
-        powers = [power(unit, self.torques) for unit in self.units]
-        target = power(self.target, self.torques)
+        powers = [power(unit, self.torques.by_fold) for unit in self.units]
+        target = power(self.target, self.torques.by_fold)
         others = [max(p.high, -p.low) for k, p in enumerate(powers) if k != self.place]
-        proved = Fraction(target.low - max(-target.low, *others), 1 << BITS)
-        margin = parse_rational(self.claims["margin"])
-        require(margin > 0, "the margin is not positive")
-        require(
-            margin <= proved, "the power on the ray does not exceed that on every rival so much"
-        )
+        self.torques.check_margin(target, max(-target.low, *others))
 
     def check_bound(self) -> None:
         """Refuse a bound that the weights do not prove."""
@@ -161,15 +146,10 @@ class _Driven:
             require(place < len(self.units), f"there is no branch {place}")
             rival = (place, _side(side)) != (self.place, self.side)
             require(rival, "a ray is the one that is driven")
-            weight = parse_rational(text)
-            require(weight >= 0, "a weight is negative")
+            weight = weight_of(text)
             total += weight
             gap = plus(gap, Interval.of(-weight * side, BITS), self.units[place])
-        require(total == 1, "the weights of the rays do not add up to 1")
-        sizes = sorted(map(largest, gap.values()), reverse=True)[: self.most]
-        proved = sum(sizes, Fraction(0)) * self.limit
-        bound = parse_rational(self.claims["bound"])
-        require(proved <= bound, "the rays and their weights do not prove the bound")
+        self.torques.check_bound(gap, total)
 
     def check_self_foldable(self) -> None:
         """Refuse a verdict that the ranks do not show."""

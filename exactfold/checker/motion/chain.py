@@ -21,7 +21,7 @@ from ..core.reading import CertificateError, at_most, items, keys, natural, requ
 from ..sheets.sheet import Sheet
 from .equations import LengthEquations
 from .lengths import Arc, Link, Step
-from .pieces import arc_of, first_piece, parameter_of, tube_of
+from .pieces import MakeTube, arc_of, first_piece, parameter_of, tube_of
 from .restriction import Restriction
 from .tubes import Ball, Tube
 
@@ -106,13 +106,18 @@ class Chain:
     the piece `start`, and goes over to `steps` at the parameter `tau`. `end` is a box with the
     configuration at which the motion leaves the last tube, or enters it if it does not leave it.
     `passed` lists for each branch point on the way the vertices that are flat there. `facts` are
-    further results that the check returns.
+    further results that the check returns. `make` proves tubes.
     """
 
     def __init__(
-        self, given: Sheet, removed: set[int], equations: LengthEquations, start: Any
+        self,
+        given: Sheet,
+        removed: set[int],
+        equations: LengthEquations,
+        start: Any,
+        make: MakeTube = Tube,
     ) -> None:
-        self.given, self.removed, self.equations = given, removed, equations
+        self.given, self.removed, self.equations, self.make = given, removed, equations, make
         self.start, self.tau = first_piece(equations, start)
         self.path = Path(self.start.configuration(self.tau), equations.bits)
         self.end = self.path.here
@@ -133,7 +138,7 @@ class Chain:
                 continue
             onwards = leaves if after is None else not is_arc(after)
             keys(entry, "centre row reach exit" if onwards else "centre row reach", "tube")
-            tube, here, left = tube_of(self.equations, entry), self.path.here, None
+            tube, here, left = tube_of(self.equations, entry, self.make), self.path.here, None
             self.path.enter(tube)
             if onwards:
                 left = parameter_of(entry["exit"])

@@ -39,8 +39,9 @@ from ..core.reading import (
 from ..sheets.reduced import emptied_sheet
 from ..sheets.sheet import read_sheet
 from .chain import Chain, check_work, equations_of
+from .pieces import MakeTube
 from .ray import land, names
-from .tubes import Start
+from .tubes import Start, Tube
 
 Ray = tuple[tuple[int, ...], int]
 """A ray: the signs of the interior vertices, 0 if a vertex cannot fold, and the side."""
@@ -66,18 +67,19 @@ class LoopSheet:
         signs = items(entry["vertex_signs"], "vertex_signs", len(self.given.interior))
         return tuple(map(integer, signs)), integer(entry["side"])
 
-    def check_loop(self, entry: dict[str, Any]) -> None:
+    def check_loop(self, entry: dict[str, Any], make: MakeTube = Tube) -> None:
         """Raise unless the evidence of a loop proves its claims; its keys are verified already.
 
         The claims are: one analytic curve of configurations begins in the flat state along the ray
         `from`, and ends in the flat state along the ray `to`. All its configurations are regular
         except the branch points that it passes. Its length is at least `length`, as for motions.
+        `make` proves tubes.
         """
         evidence = entry["evidence"]
         keys(evidence, "start steps landing", "evidence")
         steps = items(evidence["steps"], "steps")
         check_work(self.equations, steps)
-        chain = Chain(self.given, self.removed, self.equations, evidence["start"])
+        chain = Chain(self.given, self.removed, self.equations, evidence["start"], make)
         require(
             self._named(chain.start) == self.ray(entry["from"]),
             'it does not begin along the ray "from"',

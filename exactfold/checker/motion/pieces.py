@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -17,10 +18,14 @@ PARAMETER_BITS = 40
 ROOT_BITS = 20
 
 
-def tube_of(equations: LengthEquations, entry: Any) -> Tube:
+MakeTube = Callable[[LengthEquations, list[int], list[int], Fraction], Tube]
+"""Proves that a tube with this centre, row and reach holds a curve."""
+
+
+def tube_of(equations: LengthEquations, entry: Any, make: MakeTube = Tube) -> Tube:
     """Read a tube, and prove that it holds a curve."""
     size = equations.size
-    return Tube(
+    return make(
         equations,
         vector(entry["centre"], "centre", size, equations.bits),
         vector(entry["row"], "row", size, 0),

@@ -16,7 +16,8 @@ from typing import Any
 from ..core import limits
 from ..core.kinds import DocumentKind
 from ..core.reading import at_most, counted, items, keys, keys_of, natural, refusing, require, same
-from ..sheets.panels import Edge, Near, PanelSheet, connected, pair, read_edges, read_panels
+from ..sheets.holes import read_sheet
+from ..sheets.panels import Edge, Near, PanelSheet, pair, read_edges
 from .claims import (
     ListedPart,
     ModeClaim,
@@ -45,19 +46,23 @@ def check(data: dict[str, Any]) -> PanelsClaims:
     claims = data["claims"]
     more = [key for key in ("spaces", "trees") if isinstance(claims, dict) and claims.get(key)]
     keys(claims, " ".join([keys_of(ModesClaims), *more]), "claims")
-    sheet, digest = read_panels(data["pattern"])
+    sheet, digest = read_sheet(data["pattern"])
     held = read_edges(claims["held"], "held")
     for i, j in held:
         require((i, j) in sheet.folds, f"{i}-{j} is held flat, but is not a fold")
     near = sheet.live(held)
-    groups = connected(near)
+    groups = sheet.connected(near)
     trees = verified_trees(sheet, groups, items(claims.get("trees", []), "trees"))
     groups = [group for group in groups if min(group) not in trees]
-    large = [group for group in groups if any(len(around) > 4 for around in group.values())]
+    large = [
+        group
+        for group in groups
+        if max(group) >= len(sheet.points) or any(len(around) > 4 for around in group.values())
+    ]
     small = {v for group in groups if group not in large for v in group}
     modes = Modes(sheet, {v: around for v, around in near.items() if v in small})
-    free = [e for e in sheet.folds if sheet.boundary_set.issuperset(e) and e not in held]
-    live = {pair(v, u) for v, around in near.items() for u in around}
+    free = [e for e in sheet.free() if e not in held]
+    live = {sheet.fold(v, u) for v, around in near.items() for u in around}
     pairs = paired(supports_of(modes), items(claims["supports"], "supports"))
     supports, loops = [support for support, _ in pairs], Loops(modes)
     extending = [_extending(loops, support, entry) for support, entry in pairs]

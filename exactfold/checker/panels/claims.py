@@ -3,7 +3,9 @@
 The pattern has the `radicands` of its field, one after the other: for the k-th, counted from 0, the
 2^k coefficients of the number that it is the root of; of each of the `vertices` the coefficients of
 x and of y, 2^m rationals for m roots, where bit i of the place stands for root i; and the `edges`,
-pairs i < j, sorted. The claims are
+pairs i < j, sorted. A sheet with holes has `holes`, too, cycles of vertices that are sorted,
+counter-clockwise from the smallest vertex. In its claims hole k, from 0, counts as the vertices
+V + 3 k + a for V vertices and a = 0, 1, 2 (`exactfold/checker/sheets/holes.py`). The claims are
 
 - `interior`, `border`, `folds`, `sha256`: numbers of vertices and folds, and the digest;
 - `held`: folds that were not to fold; everything else holds if they are held flat;
@@ -13,10 +15,10 @@ pairs i < j, sorted. The claims are
   is null if it is not known;
 - `rigid`: "proved", "refuted" or, which claims nothing, "undecided";
 - `modes`: the number of elementary modes; null if vertices have more than four folds that may fold,
-  or if there are `trees`;
+  or holes, or if there are `trees`;
 - `supports`: all sets of vertices that move together;
-- `spaces`, `trees`: the parts that have vertices with more than four folds that may fold, and those
-  whose components are counted along a tree; left out if there are none.
+- `spaces`, `trees`: the parts that have vertices with more than four folds that may fold, or
+  holes, and those whose components are counted along a tree; left out if there are none.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ class Forms(Motions):
                     (d, [self._value(row, motion) for motion in motions]) for d, row in weighted
                 ]
             else:
-                folds = [pair(v, u) for u in self.near[v]]
+                folds = [self.sheet.fold(v, u) for u in self.near[v]]
                 local = [{fold: m[fold] for fold in folds if fold in m} for m in motions]
                 found = self._local_squares(v, local)
             self._found[key] = motions, found
@@ -72,7 +72,7 @@ class Forms(Motions):
 
     def _touching(self, v: int, space: Space) -> tuple[list[int], Space, tuple[int, ...]]:
         """The places of the motions that move a fold of a vertex, these motions, and a key."""
-        folds = [pair(v, u) for u in self.near[v]]
+        folds = [self.sheet.fold(v, u) for u in self.near[v]]
         touching = [k for k, motion in enumerate(space) if any(fold in motion for fold in folds)]
         motions = [space[k] for k in touching]
         return touching, motions, (v, *map(id, motions))
@@ -82,7 +82,7 @@ class Forms(Motions):
 
         The vertex has at least four folds; of others this is not asked.
         """
-        if len(self.near[v]) < 4:
+        if len(self.near[v]) < 4 or v >= len(self.sheet.points):
             return False
         if v not in self._alone:
             self._alone[v] = self._by_itself(v)
@@ -181,7 +181,7 @@ class Forms(Motions):
 
     def _brackets(self, v: int, bits: int | None) -> list[tuple[Edge, Edge, Any]]:
         if (v, bits) not in self._known:
-            spokes = [(pair(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
+            spokes = [(self.sheet.fold(v, u), self.sheet.vector(v, u)) for u in self.near[v]]
             pairs = combinations(spokes, 2)
             brackets: list[tuple[Edge, Edge, Any]] = [
                 (f, g, cross(c, d)) for (f, c), (g, d) in pairs
@@ -208,8 +208,8 @@ class Forms(Motions):
         tower, folds = tower_of(space), {*folds_of(space)}
 
         def rank(v: int) -> tuple[int, int, int]:
-            active = [u for u in self.near.get(v, ()) if pair(v, u) in folds]
-            return -sum(u in settled for u in active), len(active), v
+            active = [f for u in self.near.get(v, ()) if (f := self.sheet.fold(v, u)) in folds]
+            return -sum(u in settled for f in active for u in self.at(f)), len(active), v
 
         found = []
         ranks = sorted(map(rank, products))

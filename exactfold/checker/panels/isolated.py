@@ -17,7 +17,7 @@ from ..core.krawczyk import Krawczyk, inverse
 from ..core.reading import at_most, integer, items, keys, keys_of, require
 from ..core.towers import Number
 from ..sheets.boxes import Box, check_disjoint, read_box
-from ..sheets.panels import Edge, pair
+from ..sheets.panels import Edge
 from .claims import IsolatedClaim
 from .motions import folds_of
 from .spaces import Spaces
@@ -41,10 +41,11 @@ def isolated_ways(spaces: Spaces, given: Any) -> tuple[tuple[Edge, ...], tuple[i
     dimension more than there are vertices with a form. So each way extends to true motions.
     """
     keys(given, keys_of(IsolatedClaim), "isolated ways")
-    full = tuple(v for v, around in spaces.near.items() if len(around) > 2)
+    numbers = {v: spaces.sheet.numbers(v, spaces.near) for v in spaces.near}
+    full = tuple(v for v, (_, forms) in numbers.items() if forms)
     at_most(len(full), limits.ISOLATED_FORMS, "the vertices of one part", "ISOLATED_FORMS")
-    folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
-    freedom = len(folds) - len(spaces.near) - len(full)
+    folds = {spaces.sheet.fold(v, u) for v, around in spaces.near.items() for u in around}
+    freedom = len(folds) - sum(conditions for conditions, _ in numbers.values())
     square = len(spaces.first_order) == freedom == len(full) + 1
     require(square, "a part with isolated ways has other numbers of motions and conditions")
     system = _system(spaces, full, given["chart"])

@@ -112,7 +112,7 @@ def components(spaces: Spaces, leaf: Leaf, leaves: Sequence[Leaf]) -> list[Compo
     parts = spaces.parts(leaf.basis)
     known: list[list[list[Place]]] = []
     for part in parts:
-        cones = _cones(part, leaf)
+        cones = _cones(spaces, part, leaf)
         known.append([[]] if len(cones) < 2 else cone_motions(spaces, part, cones))
         vertices = ", ".join(map(str, cones))
         shown = f"the zeros of the forms of vertices {vertices} may be other components"
@@ -121,9 +121,9 @@ def components(spaces: Spaces, leaf: Leaf, leaves: Sequence[Leaf]) -> list[Compo
     for _, each in found if len(found) > 1 else ():
         place: Place = {}
         for part, motions in zip(parts, each, strict=True):
-            cones = _cones(part, leaf)
+            cones = _cones(spaces, part, leaf)
             if cones:
-                place |= (motions or cone_motions(spaces, part, cones)[0])[0]
+                place |= (motions or next(iter(cone_motions(spaces, part, cones)), [{}]))[0]
             else:
                 place |= enclosed(_sum(spaces, part))
         for other in leaves:
@@ -132,9 +132,9 @@ def components(spaces: Spaces, leaf: Leaf, leaves: Sequence[Leaf]) -> list[Compo
     return found
 
 
-def _cones(part: list[Motion], leaf: Leaf) -> list[int]:
+def _cones(spaces: Spaces, part: list[Motion], leaf: Leaf) -> list[int]:
     """The vertices of a part whose forms are left as cones."""
-    active = {v for fold in folds_of(part) for v in fold}
+    active = {v for fold in folds_of(part) for v in spaces.at(fold)}
     return [v for v in leaf.cones if v in active]
 
 
@@ -149,28 +149,59 @@ def extends(spaces: Spaces, leaf: Leaf, motions: Sequence[list[Place]] = ()) -> 
     """
     parts = spaces.parts(leaf.basis)
     known = zip(parts, motions or [[]] * len(parts), strict=True)
-    return all(_folds(spaces, part, _cones(part, leaf), some) for part, some in known)
+    return all(_folds(spaces, part, _cones(spaces, part, leaf), some) for part, some in known)
 
 
 def _folds(
     spaces: Spaces, part: list[Motion], cones: list[int], motions: Sequence[Place] = ()
 ) -> bool:
     folds = set(folds_of(part))
-    near = {v: [u for u in around if pair(v, u) in folds] for v, around in spaces.near.items()}
-    near = {v: around for v, around in near.items() if around}
-    if len(near) == 1 and len(part) == len(folds) - 2:
+    near = spaces.sheet.only(spaces.near, folds)
+    plain = max(near) < len(spaces.sheet.points)
+    if plain and len(near) == 1 and len(part) == len(folds) - 2:
         return True
     inner = Spaces(spaces.sheet, near, spaces.work)
+    forms = inner if near.keys() >= {*cones} else spaces
     points = list(motions) or [enclosed(_sum(inner, part))]
     if cones and not motions:
-        points = [place for places in cone_motions(inner, part, cones) for place in places]
+        points = [place for places in cone_motions(forms, part, cones) for place in places]
     if any(_independent(inner, point) for point in points[:MOST_POINTS]):
         return True
     if cones:
         return False
+    if not plain:
+        return len(part) == 1 and _close_always(inner, part[0])
     if len(part) != 1 or any(len(around) > 4 for around in near.values()):
         return False
     return _closes(spaces.sheet, near, part[0])
+
+
+def _close_always(spaces: Spaces, motion: Motion) -> bool:
+    """Whether all vertices and holes close for every T if tau = T w (docs/panels.md, 7).
+
+    The turn about the line (x, y, m) is the dual quaternion 1 + tau (x i + y j + m eps k), and the
+    vector parts of their product, without eps and with it, must be 0.
+    """
+    zero, one = spaces.sheet.tower.number(0), spaces.sheet.tower.number(1)
+    for lines in spaces.sheet.rounds(spaces.near):
+        total = [[one, *[zero] * 7]]
+        for fold, line in lines:
+            p, q, r = (motion[fold] * x for x in line)
+            spaces.work.count(20 * len(total), motion[fold])
+            turned = []
+            for s, a, b, c, t, d, e, f in total:
+                turned.append(
+                    [
+                        *(-a * p - b * q, s * p - c * q, s * q + c * p, a * q - b * p),
+                        *(-d * p - e * q - c * r, t * p - f * q + b * r),
+                        *(t * q + f * p - a * r, d * q - e * p + s * r),
+                    ]
+                )
+            rows = zip([*total, [zero] * 8], [[zero] * 8, *turned], strict=True)
+            total = [[u + v for u, v in zip(low, high, strict=True)] for low, high in rows]
+        if any(x.sign() for row in total for x in (*row[1:4], *row[5:])):
+            return False
+    return True
 
 
 def _closes(sheet: PanelSheet, near: Mapping[int, list[int]], motion: Motion) -> bool:
@@ -205,10 +236,11 @@ def complete(spaces: Spaces, leaves: list[Leaf]) -> bool:
     leaf is the whole space of first-order motions, with the form of every vertex that has a form,
     and the first-order conditions are independent.
     """
-    if len(spaces.near) == 1 or all(_regular(spaces, leaf) for leaf in leaves):
+    alone = len(spaces.near) == 1 and max(spaces.near) < len(spaces.sheet.points)
+    if alone or all(_regular(spaces, leaf) for leaf in leaves):
         return True
     whole = [leaf for leaf in leaves if len(leaf.basis) == len(spaces.first_order)]
-    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    full = [v for v in spaces.near if spaces.sheet.numbers(v, spaces.near)[1]]
     return bool(whole) and sorted(whole[0].cones) == sorted(full) and _all_count(spaces)
 
 
@@ -217,9 +249,10 @@ def _all_count(spaces: Spaces) -> bool:
 
     Each vertex has two conditions. A vertex with a straight pair has one, and it has no form.
     """
-    folds = {pair(v, u) for v, around in spaces.near.items() for u in around}
-    full = [v for v, around in spaces.near.items() if len(around) > 2]
-    return len(spaces.first_order) == len(folds) - len(spaces.near) - len(full)
+    sheet = spaces.sheet
+    folds = {sheet.fold(v, u) for v, around in spaces.near.items() for u in around}
+    number = sum(sheet.numbers(v, spaces.near)[0] for v in spaces.near)
+    return len(spaces.first_order) == len(folds) - number
 
 
 def _regular(spaces: Spaces, leaf: Leaf) -> bool:
@@ -239,10 +272,10 @@ def _sum(spaces: Spaces, part: list[Motion]) -> Motion:
 def _independent(spaces: Spaces, point: Place) -> bool:
     """Whether the first-order conditions, and the derivatives of all forms at a motion, are
     independent."""
-    full = [v for v, around in spaces.near.items() if len(around) > 2]
+    full = [v for v in spaces.near if spaces.sheet.numbers(v, spaces.near)[1]]
     if not _all_count(spaces):
         return False
-    if any(len(spaces.near[v]) < 4 for v in full):
+    if any(len(spaces.near[v]) < 4 and v < len(spaces.sheet.points) for v in full):
         return False
     return _rank(spaces, point) == len(full)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ..core.towers import Number, Tower
-from ..sheets.panels import Edge, PanelSheet, pair
+from ..sheets.panels import Edge, PanelSheet
 from .reduction import Work, zero
 
 Motion = dict[Edge, Number]
@@ -37,7 +37,16 @@ class Motions:
         self, sheet: PanelSheet, near: Mapping[int, list[int]], work: Work | None = None
     ) -> None:
         self.sheet, self.near, self.work = sheet, near, work or Work()
+        self._at: dict[Edge, tuple[int, ...]] = {}
+        for v, around in near.items():
+            for u in around:
+                fold = sheet.fold(v, u)
+                self._at[fold] = (*self._at.get(fold, ()), v)
         self.first_order = self._first_order()
+
+    def at(self, fold: Edge) -> tuple[int, ...]:
+        """The vertices whose conditions have a fold; (v, -n) is a factor of the form of v."""
+        return fold[:1] if fold[1] < 0 else self._at.get(fold, ())
 
     def _first_order(self) -> Space:
         """The space of all densities with sum_j w_j d_j = 0 at each vertex.
@@ -46,12 +55,12 @@ class Motions:
         move a fold.
         """
         one = self.sheet.tower.number(1)
-        folds = sorted({pair(v, u) for v, around in self.near.items() for u in around})
+        folds = sorted(self._at)
         space: dict[int, Motion] = {k: {fold: one} for k, fold in enumerate(folds)}
         holders = {fold: {k} for k, fold in enumerate(folds)}
         for v, around in self.near.items():
             for axis in (0, 1):
-                weights = {pair(v, u): self.sheet.vector(v, u)[axis] for u in around}
+                weights = {self.sheet.fold(v, u): self.sheet.vector(v, u)[axis] for u in around}
                 touched = sorted(set[int]().union(*(holders[fold] for fold in weights)))
                 row = {k: self._value(weights, space[k]) for k in touched}
                 gone, changed = self._solved(space, row)

@@ -114,10 +114,10 @@ class Spaces(Forms):
         """
         groups: list[set[Edge]] = []
         for fold in folds_of(space):
-            together = {fold}
+            together, here = {fold}, {*self.at(fold)}
             apart = []
             for group in groups:
-                if any(v in self.near and v in fold for other in group for v in other):
+                if any(not here.isdisjoint(self.at(other)) for other in group):
                     together |= group
                 else:
                     apart.append(group)
@@ -213,7 +213,7 @@ class Spaces(Forms):
         kernel: list[list[Number]] = []
         products: dict[int, Squares] = {}
         left: list[int] = []
-        touched = {v for fold in folds_of(part) for v in fold if v in self.near}
+        touched = {v for fold in folds_of(part) for v in self.at(fold)}
         for v in sorted(touched - settled):
             if self.is_cone(v, part):
                 left.append(v)

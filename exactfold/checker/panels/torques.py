@@ -42,7 +42,6 @@ from ..core.reading import (
     items,
     keys,
     keys_of,
-    natural,
     parse_rational,
     refusing,
     require,
@@ -56,13 +55,14 @@ from .reduction import BITS, Joined, Work, reduced
 from .unit_motions import (
     BY_LENGTH,
     EQUAL,
+    Torques,
     UnitMotions,
     Vector,
     densities_of,
-    largest,
     plus,
     power,
     root_of_sum,
+    weight_of,
 )
 
 MOST_RAYS = limits.TORQUE_RAYS
@@ -107,18 +107,18 @@ def check(data: dict[str, Any]) -> TorqueClaims:
     sheet, digest = read_panels(data["pattern"])
     require(claims["sha256"] == digest, f"the digest of the pattern is {digest}")
     motions = UnitMotions(sheet, facts, claims["springs"])
-    torques = _Torques(motions, claims)
-    torques.check_margin()
-    torques.check_bound(evidence)
-    verdict = self_foldable(motions, torques.way, torques.rivals)
+    driven = _Driven(motions, claims)
+    driven.check_margin()
+    driven.check_bound(evidence)
+    verdict = self_foldable(motions, driven.way, driven.rivals)
     said = claims["self_foldable"]
     require(said in ("undecided", verdict), f"that the way is self-foldable is {verdict}")
     proved: TorqueClaims = claims
     return proved
 
 
-class _Torques:
-    """The torques of a file, the ray that they drive, and its rivals."""
+class _Driven:
+    """The ray that is driven, its rivals, and the torques of a file."""
 
     def __init__(self, motions: UnitMotions, claims: TorqueClaims) -> None:
         self.motions, self.claims = motions, claims
@@ -134,17 +134,7 @@ class _Torques:
         for row in self.own:
             self.target |= {fold: value * share for fold, value in row.items()}
         self.share = share
-        folds = motions.sheet.folds
-        values = items(claims["torques"], "torques", len(folds))
-        self.torques = dict(zip(folds, map(parse_rational, values), strict=True))
-        self.limit = parse_rational(claims["limit"])
-        large = [fold for fold, torque in self.torques.items() if abs(torque) > self.limit]
-        require(not large, "a torque is larger than the limit")
-        self.most: int | None = None
-        if claims["creases"] is not None:
-            self.most = natural(claims["creases"], "creases")
-            driven = sum(torque != 0 for torque in self.torques.values())
-            require(driven <= self.most, f"{driven} folds are driven, more than {self.most}")
+        self.torques = Torques(motions.sheet.folds, claims)
 
     def _sided(self) -> list[Vector]:
         """The motions of the way, each to the side that has the letters."""
@@ -167,22 +157,16 @@ class _Torques:
 
     def check_margin(self) -> None:
         """Refuse a margin that some rival contradicts."""
-        powers = [power(motion.row, self.torques) for motion in self.motions.motions]
-        target = power(self.target, self.torques)
-        turned = [target - self._twice(power(row, self.torques) * self.share) for row in self.own]
+        powers = [power(motion.row, self.torques.by_fold) for motion in self.motions.motions]
+        target = power(self.target, self.torques.by_fold)
+        own = [power(row, self.torques.by_fold) * self.share for row in self.own]
+        turned = [target - self._twice(one) for one in own]
         others = [root_of_sum([powers[k] for k in way]) for way in self.rivals]
-        most = max(rival.high for rival in [*turned, *others])
-        proved = Fraction(target.low - most, 1 << BITS)
-        margin = parse_rational(self.claims["margin"])
-        require(margin > 0, "the margin is not positive")
-        require(
-            margin <= proved,
-            "the power on the ray does not exceed that on every rival by the margin",
-        )
+        self.torques.check_margin(target, max(rival.high for rival in [*turned, *others]))
 
     def check_bound(self, evidence: TorqueEvidence) -> None:
         """Refuse a bound that the weights do not prove."""
-        turned = [_weight(x) for x in items(evidence["turned"], "turned", len(self.way))]
+        turned = [weight_of(x) for x in items(evidence["turned"], "turned", len(self.way))]
         gap = dict(self.target)
         for weight, row in zip(turned, self.own, strict=True):
             ray = plus(self.target, -self._twice(self.share), row)
@@ -192,16 +176,12 @@ class _Torques:
         at_most(len(rays), MOST_RAYS, "the rays", "TORQUE_RAYS")
         for entry in rays:
             parts, text = items(entry, "a ray", 2)
-            weight = _weight(text)
+            weight = weight_of(text)
             total += weight
             for place, c in self._ray(parts):
                 share = Interval.of(-weight * c, BITS)
                 gap = plus(gap, share, self.motions.motions[place].row)
-        require(total == 1, "the weights of the rays do not add up to 1")
-        sizes = sorted(map(largest, gap.values()), reverse=True)[: self.most]
-        proved = sum(sizes, Fraction(0)) * self.limit
-        bound = parse_rational(self.claims["bound"])
-        require(proved <= bound, "the rays and their weights do not prove the bound")
+        self.torques.check_bound(gap, total)
 
     def _ray(self, parts: Any) -> list[tuple[int, Fraction]]:
         """The motions of a ray of another way, with their coefficients."""
@@ -218,12 +198,6 @@ class _Torques:
     @staticmethod
     def _twice(value: Interval) -> Interval:
         return value + value
-
-
-def _weight(text: Any) -> Fraction:
-    weight = parse_rational(text)
-    require(weight >= 0, "a weight is negative")
-    return weight
 
 
 def self_foldable(

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from ..core import limits
 from ..core.intervals import Interval
-from ..core.reading import at_most, items, require
+from ..core.reading import at_most, items, natural, parse_rational, require
 from ..core.towers import Number
 from ..sheets.panels import Edge, PanelSheet, dot, pair, read_edges
 from .certificate import kind_of, listed, paired, supports_of
@@ -175,3 +175,51 @@ def root_of_sum(values: Sequence[Interval]) -> Interval:
     """The square root of the sum of squares."""
     squares = (value * value for value in values)
     return sum(squares, start=Interval.of(Fraction(0), BITS)).root()
+
+
+class Torques:
+    """The torques that a file claims, of size at most `limit`, on at most `most` folds."""
+
+    def __init__(self, folds: Sequence[Edge], claims: Mapping[str, Any]) -> None:
+        self.claims = claims
+        values = items(claims["torques"], "torques", len(folds))
+        self.by_fold = dict(zip(folds, map(parse_rational, values), strict=True))
+        self.limit = parse_rational(claims["limit"])
+        small = all(abs(torque) <= self.limit for torque in self.by_fold.values())
+        require(small, "a torque is larger than the limit")
+        self.most: int | None = None
+        if claims["creases"] is not None:
+            self.most = natural(claims["creases"], "creases")
+            number = sum(torque != 0 for torque in self.by_fold.values())
+            require(number <= self.most, f"{number} folds are driven, more than {self.most}")
+
+    def check_margin(self, target: Interval, rivals: int) -> None:
+        """Refuse a margin unless the power on the ray exceeds that of all rivals by it.
+
+        `rivals` is at least the largest power on a rival, with `BITS` bits after the point.
+        """
+        margin = parse_rational(self.claims["margin"])
+        require(margin > 0, "the margin is not positive")
+        require(
+            margin <= Fraction(target.low - rivals, 1 << BITS),
+            "the power on the ray does not exceed that on every rival by the margin",
+        )
+
+    def check_bound(self, gap: Vector, weights: Fraction) -> None:
+        """Refuse a bound that the target less the weighted rays, `gap`, does not prove.
+
+        `weights` is the sum of the weights.
+        """
+        require(weights == 1, "the weights of the rays do not add up to 1")
+        sizes = sorted(map(largest, gap.values()), reverse=True)[: self.most]
+        require(
+            sum(sizes, Fraction(0)) * self.limit <= parse_rational(self.claims["bound"]),
+            "the rays and their weights do not prove the bound",
+        )
+
+
+def weight_of(text: Any) -> Fraction:
+    """The weight of a ray, which is not negative."""
+    weight = parse_rational(text)
+    require(weight >= 0, "a weight is negative")
+    return weight

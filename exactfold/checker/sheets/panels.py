@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cmp_to_key
 from itertools import pairwise
 from typing import Any
@@ -14,6 +14,8 @@ from ..core.towers import Number, Tower
 
 Edge = tuple[int, int]
 Vector = tuple[Number, Number]
+Line = tuple[Number, Number, Number]
+"""The direction (x, y) of a fold, and the moment m of a point on it."""
 Near = dict[int, list[int]]
 """The neighbours of each vertex, counter-clockwise."""
 _GRID = 64  # bits of the rounded boxes by which edges that may meet are found
@@ -68,6 +70,36 @@ class PanelSheet:
         sides = {pair(i, j) for i, j in zip(boundary, (*boundary[1:], boundary[0]), strict=True)}
         self.folds = [edge for edge in edges if edge not in sides]
         self.interior = [v for v in range(len(points)) if v not in self.boundary_set]
+
+    def fold(self, v: int, u: int) -> Edge:
+        """The fold from a vertex to a neighbour."""
+        return pair(v, u)
+
+    def free(self) -> list[Edge]:
+        """The folds from boundary to boundary, which are in no condition."""
+        return [edge for edge in self.folds if self.boundary_set.issuperset(edge)]
+
+    def only(self, near: Mapping[int, list[int]], folds: set[Edge]) -> Near:
+        """The neighbours of each vertex across some of its folds, if there are any."""
+        kept = {v: [u for u in around if pair(v, u) in folds] for v, around in near.items()}
+        return {v: around for v, around in kept.items() if around}
+
+    def numbers(self, v: int, near: Mapping[int, list[int]]) -> tuple[int, int]:
+        """The numbers of conditions of first order and of forms of a vertex with these neighbours.
+
+        A straight pair has one condition and no form.
+        """
+        return (1, 0) if len(near[v]) == 2 else (2, 1)
+
+    def rounds(self, near: Mapping[int, list[int]]) -> Iterator[list[tuple[Edge, Line]]]:
+        """The folds round each vertex, and their lines (x, y, m) with the moments about it."""
+        zero = self.tower.number(0)
+        for v, around in near.items():
+            yield [(pair(v, u), (*self.vector(v, u), zero)) for u in around]
+
+    def connected(self, near: Near) -> list[Near]:
+        """The parts of a sheet that folds connect, each with its vertices sorted."""
+        return connected(near)
 
     def vector(self, v: int, u: int) -> Vector:
         """The vector from v to u."""
@@ -205,7 +237,14 @@ def walks(around: Mapping[int, list[int]]) -> list[tuple[int, ...]]:
 
 def read_panels(data: Any) -> tuple[PanelSheet, str]:
     """Read and verify the sheet of a pattern; return the sheet and the SHA-256 of the pattern."""
-    keys(data, "radicands vertices edges", "pattern")
+    tower, points, edges, lines = read_drawing(data)
+    digest = hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
+    return PanelSheet(tower, points, edges), digest
+
+
+def read_drawing(data: Any, more: str = "") -> tuple[Tower, list[Vector], list[Edge], list[str]]:
+    """The field, points and edges of a pattern that may have more keys, and lines of its digest."""
+    keys(data, f"radicands vertices edges {more}", "pattern")
     lines = ["exactfold panels 1"]
     tower = Tower()
 
@@ -232,8 +271,7 @@ def read_panels(data: Any) -> tuple[PanelSheet, str]:
         edges.append((i, j))
         lines.append(f"e {i} {j}")
     require(edges == sorted(set(edges)), "the edges are not sorted")
-    digest = hashlib.sha256("".join(line + "\n" for line in lines).encode()).hexdigest()
-    return PanelSheet(tower, points, edges), digest
+    return tower, points, edges, lines
 
 
 def read_edges(value: Any, what: str) -> list[Edge]:

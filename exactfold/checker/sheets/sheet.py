@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable
 from fractions import Fraction
-from math import isqrt
+from math import isqrt, lcm
 from typing import Any, TypedDict
 
 from ..core.limits import MOST_ABOVE, MOST_MEETINGS
@@ -28,7 +28,9 @@ class SheetFacts(TypedDict):
 
 def turn(a: Point, b: Point, c: Point) -> Fraction:
     """Twice the signed area of the triangle abc."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    scale = lcm(*(x.denominator for x in (*a, *b, *c)))
+    ax, ay, bx, by, cx, cy = (x.numerator * (scale // x.denominator) for x in (*a, *b, *c))
+    return Fraction((bx - ax) * (cy - ay) - (by - ay) * (cx - ax), scale * scale)
 
 
 class Sheet:
@@ -152,23 +154,26 @@ class Sheet:
         return self._forms[vertex]
 
     def _curvature(self, vertex: int) -> Form:
-        ring, (x, y) = self.star(vertex), self.points[vertex]
-        spoke = {j: (self.points[j][0] - x, self.points[j][1] - y) for j in ring}
-        form: Form = {}
-
-        def add(i: int, j: int, half: Fraction) -> None:
-            """Add 2 * half * x_i * x_j, with x_i = h_i - h_v: four products of heights."""
-            for a, b, weight in ((i, j, half), (i, vertex, -half), (vertex, j, -half)):
-                form[a, b] = form.get((a, b), 0) + weight
-                form[b, a] = form.get((b, a), 0) + weight
-            form[vertex, vertex] = form.get((vertex, vertex), 0) + 2 * half
-
+        ring = self.star(vertex)
+        scale = lcm(*(c.denominator for v in (vertex, *ring) for c in self.points[v]))
+        whole = {
+            v: [c.numerator * (scale // c.denominator) for c in self.points[v]]
+            for v in (vertex, *ring)
+        }
+        (x, y), unit = whole[vertex], scale * scale
+        form: Form = {(j, j): Fraction(0) for j in ring}
+        away = dict.fromkeys(ring, Fraction(0))
         for i, j in zip(ring, ring[1:] + ring[:1], strict=True):
-            (ax, ay), (bx, by) = spoke[i], spoke[j]
-            c, s = Fraction(ax * by - ay * bx), ax * bx + ay * by
-            add(i, j, 1 / (2 * c))
-            add(i, i, -s / (4 * c * (ax * ax + ay * ay)))
-            add(j, j, -s / (4 * c * (bx * bx + by * by)))
+            ax, ay, bx, by = whole[i][0] - x, whole[i][1] - y, whole[j][0] - x, whole[j][1] - y
+            c, s = 2 * (ax * by - ay * bx), (ax * bx + ay * by) * unit
+            off = Fraction(unit, c)
+            form[i, j] = form[j, i] = form.get((i, j), 0) + off
+            form[i, i] -= Fraction(s, c * (ax * ax + ay * ay))
+            form[j, j] -= Fraction(s, c * (bx * bx + by * by))
+            away[i], away[j] = away[i] + off, away[j] + off
+        for j in ring:  # heights that are all the same bend nothing: each row adds up to 0
+            form[j, vertex] = form[vertex, j] = -form[j, j] - away[j]
+        form[vertex, vertex] = -sum((form[j, vertex] for j in ring), Fraction(0))
         return form
 
     def sign_of_vertex(self, vertex: int) -> dict[int, Fraction]:

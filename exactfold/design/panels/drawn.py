@@ -34,8 +34,10 @@ def with_drawn(
 
     The ways are returned as they are if all of them are known, or if the drawing has no mountain
     and no valley. If the drawing is too inexact to infer the sheet that was meant, the answer is
-    what holds for every sheet near it (`with_nearby`).
+    what holds for every sheet near it (`with_nearby`). For sheets with holes neither is known.
     """
+    if ways.pattern.holes:
+        return ways
     if opened.doubt:
         return with_nearby(ways, opened)
     known = ways.second_order is not None

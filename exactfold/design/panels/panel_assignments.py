@@ -21,6 +21,7 @@ from exactfold._support.progress import Progress
 from exactfold._support.results import Certified
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.counting.collect import count_branches
+from exactfold.branches.counting.doubted import about
 from exactfold.design.panels.block_letters import UPSIDE_DOWN, BlockLetters
 from exactfold.design.panels.parts import blocks_of
 from exactfold.design.refutations.forcing import Forcing, ForcingDocument
@@ -185,7 +186,7 @@ def panel_assignments(
     (2, 12)
     """
     start = time.perf_counter()
-    opened = open_sheet(pattern)
+    opened = about(open_sheet(pattern))
     given = opened.sheet
     sheet = panels(given) if isinstance(given, CreasePattern) else given
     moving, interior = stars(sheet), set(sheet.interior)

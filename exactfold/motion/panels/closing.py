@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import qr, solve_triangular
 from scipy.sparse import csr_matrix, identity
 from scipy.sparse.linalg import splu
 
@@ -156,13 +156,30 @@ class Closing:
         The first of them moves the most when only it is chosen; and so on.
         """
         matrix = self.derivative(angles).toarray()
-        _, sizes, rows = np.linalg.svd(matrix)
-        rank = int((sizes > _SMALL * sizes.max(initial=1e-300)).sum())
-        basis = rows[rank:]
+        basis = (_kernel if matrix.shape[1] <= _DENSE else _kernel_of_many)(matrix)
         if not len(basis):
             return ()
         order = qr(basis, pivoting=True, mode="r")[1][: len(basis)]
         return tuple(self.pattern.folds[k] for k in order)
+
+
+def _kernel(matrix: FloatArray) -> FloatArray:
+    """An orthonormal basis of the x with matrix x = 0, as rows."""
+    _, sizes, rows = np.linalg.svd(matrix)
+    rank = int((sizes > _SMALL * sizes.max(initial=1e-300)).sum())
+    return np.asarray(rows[rank:])
+
+
+def _kernel_of_many(matrix: FloatArray) -> FloatArray:
+    """The same by QR factors with pivots, which take a fraction of the time of singular values."""
+    factor, order = qr(matrix, pivoting=True, mode="r")
+    sizes = np.abs(np.diag(factor))
+    rank = int((sizes > _SMALL * sizes.max(initial=1e-300)).sum())
+    count = matrix.shape[1]
+    kernel = np.zeros((count, count - rank))
+    bound = solve_triangular(factor[:rank, :rank], factor[:rank, rank:])
+    kernel[order] = np.concatenate([-bound, np.eye(count - rank)])
+    return np.asarray(qr(kernel, mode="economic")[0].T)
 
 
 def _one(number: int) -> FloatArray:

@@ -18,8 +18,9 @@ from exactfold.panels.modes.densities import Density, Roots
 from exactfold.panels.modes.extension import LINEAR, Extension, extension
 from exactfold.panels.result import Decomposition, Part
 from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex.holes import conditions
 from exactfold.panels.vertex.local import LocalMode
-from exactfold.panels.vertex.stars import Star, stars
+from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
 _REASONS: Final = 3
@@ -59,8 +60,11 @@ class PanelMode:
         True is proved exactly. With tau = tan(angle / 2) / length, a vertex closes if and only if
         the vector part of the product of the quaternions 1 + tau_j d_j vanishes (docs/panels.md,
         All fold angles). On the line of its local mode this is a polynomial in T. It is expanded,
-        and all its coefficients have to be 0.
+        and all its coefficients have to be 0. That a hole closes is not looked at: False decides
+        nothing then.
         """
+        if any(star.hole is not None for star in self.stars):
+            return False
         pairs = zip(self.stars, self.choice, strict=True)
         return all(closes_always(star.directions, mode.values) for star, mode in pairs)
 
@@ -126,7 +130,7 @@ def panel_modes(result: Decomposition) -> tuple[PanelMode, ...]:
     >>> panel_modes(decompose(panels(single_vertex(4))))[0]
     <PanelMode: 1, 1 vertex, 4 folds, proved by forest>
     """
-    moving = stars(result.pattern, result.held)
+    moving = conditions(result.pattern, result.held)
     modes: list[PanelMode] = []
     narrowed: dict[tuple[int, tuple[Edge, ...]], Star] = {}
 

@@ -21,7 +21,7 @@ from exactfold.motion.panels.followable import (
 from exactfold.panels.count_document import WayDocument
 from exactfold.panels.result import Decomposition, Part
 from exactfold.panels.spaces.subspaces import Leaf
-from exactfold.panels.vertex.stars import stars
+from exactfold.panels.vertex.holes import conditions
 from exactfold.pattern.panel_pattern import Edge
 
 _MOST_WRITTEN: Final = 256
@@ -179,7 +179,7 @@ class _Space:
 def _spaces(result: Decomposition, modes: Sequence[PanelMode]) -> list[_Space]:
     """The components of dimension 1 or more that contain none of the modes."""
     lines = [mode.folds for mode in modes]
-    moving = stars(result.pattern, result.held)
+    moving = conditions(result.pattern, result.held)
     spaces = []
     for part in result.parts:
         shown = {id(leaf): folds for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True)}
@@ -252,7 +252,7 @@ def _letters_on(result: Decomposition, leaf: Leaf) -> Mapping[Edge, str]:
     if leaf.motion:
         return {edge: "V" if low > 0 else "M" for edge, (low, _) in leaf.densities.items()}
     if leaf.size == 1 and not leaf.vertices:
-        return line_mode(result, leaf, stars(result.pattern, result.held)).letters
+        return line_mode(result, leaf, conditions(result.pattern, result.held)).letters
     return dict.fromkeys(leaf.folds, "U")
 
 

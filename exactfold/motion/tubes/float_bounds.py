@@ -8,21 +8,58 @@ Numerical Algorithms, section 3.1). Products below the normal range are off by 2
 
 from __future__ import annotations
 
+from collections.abc import Sequence, Sized
 from math import ldexp
+from typing import Protocol
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.tubes.contraction import SCALE, WEIGHT_BITS, Contraction
-from exactfold.motion.tubes.length_equations import ENOUGH, LengthEquations, Row, weights_of
+from exactfold.motion.tubes.length_equations import ENOUGH, Row, weights_of
 
 _UNIT = 2.0**-53
 _MOST = 2.0**100  # a tube has no numbers as large as this
 
 
+class Bars(Protocol):
+    """The bars of a framework, of which only the number is used, and their flat vectors U_e."""
+
+    @property
+    def bars(self) -> Sized:
+        """The bars."""
+
+    @property
+    def flat_edges(self) -> FloatArray:
+        """U_e, shape (bars, 3); each is rounded once."""
+
+    @property
+    def size(self) -> int:
+        """The number of unknowns."""
+
+
+class Equations(Protocol):
+    """Length equations of curves whose coefficients are integers over 2^`bits`."""
+
+    @property
+    def framework(self) -> Bars:
+        """The bars."""
+
+    @property
+    def bits(self) -> int:
+        """Binary places of the unknowns."""
+
+    @property
+    def incidence(self) -> FloatArray:
+        """The matrix that takes unknowns to their differences along the bars."""
+
+    def floats(self, row: Sequence[int]) -> FloatArray:
+        """Integers over 2^bits as floats."""
+
+
 def series_at(
-    equations: LengthEquations, inverse: FloatArray, order: int
+    equations: Equations, inverse: FloatArray, order: int
 ) -> tuple[FloatArray, FloatArray]:
     """The coefficients a_1, ..., a_order of a curve, nearly, and their differences along the bars.
 
@@ -42,7 +79,7 @@ def series_at(
 
 
 def contraction_in_floats(
-    equations: LengthEquations,
+    equations: Equations,
     inverse: FloatArray,
     centre: Row,
     stretch: list[int],

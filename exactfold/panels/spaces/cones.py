@@ -371,13 +371,13 @@ def is_one_family(
     They are if the leaf consists of all first-order motions, a space of dimension `size`, if the
     form of each vertex with more than two folds remains on it, and if the first-order conditions
     are independent: two for each of these vertices and one for each straight pair (docs/panels.md,
-    Vertices with more folds).
+    Vertices with more folds). The stars of a hole count as they say.
 
     >>> right = Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1)))
     >>> is_one_family({0: right}, 2, 2, [0]), is_one_family({0: right}, 2, 1, [0])
     (True, False)
     """
-    full = [v for v, star in stars.items() if len(star.folds) != 2]
+    full = [v for v, star in stars.items() if star.has_form]
     folds = {edge for star in stars.values() for edge in star.folds}
-    independent = size == len(folds) - len(stars) - len(full)
+    independent = size == len(folds) - sum(star.conditions for star in stars.values())
     return independent and leaf_size == size and sorted(vertices) == sorted(full)

@@ -26,7 +26,7 @@ from exactfold.panels.spaces.regular import (
     truly_folds,
 )
 from exactfold.panels.spaces.subspaces import Leaf, made_leaf
-from exactfold.panels.vertex.stars import Star
+from exactfold.panels.vertex.stars import Star, incidence
 
 
 @dataclass(frozen=True)
@@ -119,9 +119,10 @@ def exact_leaf(
             rows, size = imposed(rows, size, min(both, key=lambda row: _relative(row, at)))
         else:
             return None
+    stars_at = incidence(moving)
     left = [
         v
-        for v in sorted({v for edge in rows for v in edge if v in moving})
+        for v in sorted({v for edge in rows for v in stars_at[edge]})
         if squares_of(moving[v], rows, size)
     ]
     if size != proposal.size or left != sorted(proposal.vertices):

@@ -79,7 +79,7 @@ def combining(stars: Mapping[int, Star], edges: Sequence[Edge], basis: FloatArra
     if basis.shape[1] <= _MOST_TURNED:
         basis = np.linalg.qr(basis)[0]
     best: list[int] = []
-    full = [v for v, star in stars.items() if len(star.folds) >= 4]
+    full = [v for v, star in stars.items() if star.hole is None and len(star.folds) >= 4]
     near = {v: {u for e in stars[v].folds for u in e if u != v} for v in full}
     for order in (sorted(full, key=lambda v: len(stars[v].folds)), _apart(full, near)):
         taken: list[int] = []

@@ -11,7 +11,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.panels.spaces.kernel import Entry, Rows
-from exactfold.panels.vertex.stars import Star
+from exactfold.panels.vertex.stars import Star, incidence
 from exactfold.pattern.panel_pattern import Edge
 
 _TINY: Final = 1e-7
@@ -113,8 +113,9 @@ class Proposals:
             )
             for group in groups
         ]
+        at = incidence(stars)
         self._near = {
-            v: [u for edge in star.folds for u in edge if u != v and u in self._forms]
+            v: [u for edge in star.folds for u in at[edge] if u != v and u in self._forms]
             for v, star in stars.items()
         }
         self._attempts = self._visits = 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from fractions import Fraction
 from typing import Any, Final, TypeAlias
 
 import numpy as np
@@ -13,11 +12,15 @@ from scipy.linalg import qr
 from exactfold.exact.surds import ball
 from exactfold.panels.spaces.kernel import first_order
 from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex.holes import restricted
 from exactfold.panels.vertex.stars import Star, bracket
 from exactfold.pattern.panel_pattern import Edge
 
 BITS: Final = 128
-_RADIUS: Final = Fraction(1, 10**9)
+_RADIUS: Final = 1e-9
+_TIMES_STEP: Final = 8.0
+_REFINED: Final = 2
+_LEAST_RADIUS: Final = 1e-30
 
 Balls: TypeAlias = Mapping[Edge, Any]
 """Enclosures of the densities of the folds that are not flat."""
@@ -131,17 +134,27 @@ def _krawczyk(forms: Forms, leaf: Leaf, rows: BallRows, start: list[Any]) -> Bal
         return None
     chosen = sorted(qr(approximate, pivoting=True, mode="r")[1][:count])
     inverse = arb_mat(np.linalg.inv(approximate[:, chosen]).tolist())
-    values = arb_mat([[forms.value(v, w)] for v in leaf.vertices])
+    start = list(start)
+    for _ in range(_REFINED):
+        w = _motion(rows, start)
+        values = arb_mat([[forms.value(v, w)] for v in leaf.vertices])
+        step = inverse * values
+        for k, j in enumerate(chosen):
+            start[j] = (start[j] - step[k, 0]).mid()
+    values = arb_mat([[forms.value(v, _motion(rows, start))] for v in leaf.vertices])
+    step = inverse * values
+    largest = max(float(abs(step[k, 0]).upper()) for k in range(count))
+    radius = min(_RADIUS, max(_TIMES_STEP * largest, _LEAST_RADIUS))
     box = list(start)
     for k in chosen:
-        box[k] = box[k] + arb(0, float(_RADIUS))
+        box[k] = box[k] + arb(0, radius)
     around = _motion(rows, box)
     slopes = forms.derivatives(leaf.vertices, around, rows, leaf.size)
     ones = arb_mat([[int(i == j) for j in range(count)] for i in range(count)])
     rest = ones - inverse * arb_mat([[row[k] for k in chosen] for row in slopes])
-    offsets = arb_mat([[arb(0, float(_RADIUS))] for _ in chosen])
-    image = rest * offsets - inverse * values
-    if not all(abs(image[k, 0]) < float(_RADIUS) for k in range(count)):
+    offsets = arb_mat([[arb(0, radius)] for _ in chosen])
+    image = rest * offsets - step
+    if not all(abs(image[k, 0]) < radius for k in range(count)):
         return None
     for k, j in enumerate(chosen):
         box[j] = start[j] + image[k, 0]
@@ -199,15 +212,15 @@ def truly_folds(stars: Mapping[int, Star], w: Balls) -> bool:
 
     Folds that are not in w are held flat. The answer is True under two conditions (docs/panels.md,
     Regular points). The first-order conditions are independent: two for each vertex, one for a
-    straight pair. The derivatives at w of all forms are independent on the first-order motions.
-    False decides nothing.
+    straight pair, and as many as its rank for a hole. The derivatives at w of all forms are
+    independent on the first-order motions. False decides nothing.
     """
-    active = {v: star.only(w) for v, star in stars.items() if set(star.folds) & set(w)}
-    full = [v for v, star in active.items() if len(star.folds) != 2]
+    active = restricted(stars, w.keys())
+    full = [v for v, star in active.items() if star.has_form]
     rows, size = first_order(active)
-    if size != len(w) - len(active) - len(full):
+    if size != len(w) - sum(star.conditions for star in active.values()):
         return False
-    if any(len(active[v].folds) < 4 for v in full):
+    if any(len(active[v].folds) < 4 and active[v].hole is None for v in full):
         return False
     before = ctx.prec
     ctx.prec = BITS

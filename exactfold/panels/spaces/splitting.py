@@ -183,7 +183,7 @@ class Splitting(LimitedSearch):
 
         def rank(v: int) -> tuple[int, int, int]:
             folds = [edge for edge in self.stars[v].folds if edge in space.rows]
-            return -sum(u in settled for edge in folds for u in edge), len(folds), v
+            return -sum(u in settled for edge in folds for u in self.at[edge]), len(folds), v
 
         ranks = sorted(map(rank, products))
         if not self._avoids_roots:
@@ -224,7 +224,7 @@ class Splitting(LimitedSearch):
         while True:
             products: list[int] = []
             left: list[int] = []
-            for v in sorted({v for edge in space.rows for v in edge if v in self.stars} - known):
+            for v in sorted({v for edge in space.rows for v in self._touched(edge)} - known):
                 if v not in forms:
                     forms[v] = self._form(v, space.rows)
                 form = forms[v]
@@ -267,7 +267,7 @@ class Splitting(LimitedSearch):
                 else:
                     del rows[edge]
             waiting = [without(f, pivot, solved) if pivot in f else f for f in waiting]
-        touched = {v for edge in changed for v in edge}
+        touched = {v for edge in changed for v in self._touched(edge)}
         return _Space(rows, {v: f for v, f in space.forms.items() if v not in touched})
 
     def _form(self, v: int, rows: Mapping[Edge, Row]) -> Form:
@@ -292,6 +292,10 @@ class Splitting(LimitedSearch):
             local, squares = basis, diagonalised(form)
         return [(plain(d), combined(weights, local)) for d, weights in squares]
 
+    def _touched(self, edge: Edge) -> tuple[int, ...]:
+        """The stars to which a row belongs; a kept factor is one of the form of a vertex."""
+        return (edge[0],) if is_kept(edge) else self.at[edge]
+
     def _parts(self, space: _Space) -> list[_Space]:
         """The space as a direct sum over the parts of the sheet that active folds connect.
 
@@ -308,18 +312,19 @@ class Splitting(LimitedSearch):
                 v = above
             return v
 
-        for i, j in space.rows:
-            if i in self.stars and j in self.stars:
-                group[of(i)] = of(j)
+        for edge in space.rows:
+            first, *others = self._touched(edge)
+            for other in others:
+                group[of(first)] = of(other)
         parts: dict[int, dict[Edge, Row]] = {}
         for edge, row in space.rows.items():
-            parts.setdefault(of(edge[edge[0] not in self.stars]), {})[edge] = row
+            parts.setdefault(of(self._touched(edge)[0]), {})[edge] = row
         used = [{k for row in part.values() for k in row} for part in parts.values()]
         if sum(map(len, used)) > len(set().union(*used)):
             return [space]
         together = []
         for part in parts.values():
-            near = {v for edge in part for v in edge}
+            near = {v for edge in part for v in self._touched(edge)}
             forms = {v: form for v, form in space.forms.items() if v in near}
             together.append(_Space(part, forms))
         return together

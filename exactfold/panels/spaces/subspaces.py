@@ -25,7 +25,7 @@ from exactfold.panels.spaces.quadratics import (
     row_space,
     squares_of,
 )
-from exactfold.panels.vertex.stars import Star
+from exactfold.panels.vertex.stars import Star, incidence
 from exactfold.pattern.panel_pattern import Edge
 
 _BITS: Final = 53
@@ -102,6 +102,7 @@ class LimitedSearch:
 
     def __init__(self, stars: Mapping[int, Star], most: int, clock: Clock = UNLIMITED) -> None:
         self.stars = stars
+        self.at = incidence(stars)
         self.most = self.until = most
         self.clock = clock
         self.work = 0
@@ -132,7 +133,7 @@ class SubspaceSearch(LimitedSearch):
             left: list[int] = []
             before = size
             weight = common_field(x for row in rows.values() for x in row).dimension ** 2
-            for v in sorted({v for edge in rows for v in edge if v in self.stars} - known):
+            for v in sorted({v for edge in rows for v in self.at[edge]} - known):
                 self.count(len(self.stars[v].folds) * size * weight)
                 squares = squares_of(self.stars[v], rows, size, self.clock)
                 if is_semidefinite(squares):
@@ -266,9 +267,10 @@ def independent_parts(rows: Rows, size: int, stars: Mapping[int, Star]) -> list[
     It is one part if a condition on several vertices joins what active folds do not connect.
     """
     graph = nx.Graph()
+    at = incidence(stars)
     for edge, row in rows.items():
         if any(row):
-            ends = [v for v in edge if v in stars]
+            ends = at.get(edge, ())
             graph.add_edges_from((edge, ("vertex", v)) for v in ends)
             graph.add_node(edge)
     groups = [

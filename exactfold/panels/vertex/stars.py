@@ -5,9 +5,26 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TypeAlias
 
 from exactfold.exact.surds import Number, sign
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
+
+Twist: TypeAlias = tuple[Number, Number, Number]
+"""The line of a fold: its direction d = (x, y), and the moment p x d of a point p on it."""
+
+
+@dataclass(frozen=True)
+class Hole:
+    """The folds that are crossed on a way round a hole, counter-clockwise, and their lines.
+
+    `number` counts the holes from 0, and `rank` is the dimension of the span of the twists.
+    """
+
+    number: int
+    folds: tuple[Edge, ...]
+    twists: tuple[Twist, ...]
+    rank: int
 
 
 @dataclass(frozen=True)
@@ -17,11 +34,30 @@ class Star:
     `directions[k]` points along `folds[k]` away from the vertex. Let w be fold angle / length. The
     first-order motions are the w with sum_k w_k d_k = 0. The second-order condition is sum_{k<j}
     w_k w_j [d_k, d_j] = 0; its left side is twice the signed area of the gradient polygon.
+
+    The conditions round a hole are those of one or three such stars, whose `vertex` is a number
+    beyond all vertices (`exactfold.panels.vertex.holes`). Then `hole` is the hole, and `directions`
+    are two of three coordinates of the lines of the folds. `conditions` is the number of
+    independent conditions of first order that the star adds to those of other stars, and `has_form`
+    says whether it has a condition of second order.
     """
 
     vertex: int
     folds: tuple[Edge, ...]
     directions: tuple[Point, ...]
+    hole: Hole | None = None
+
+    @property
+    def conditions(self) -> int:
+        """1 for a straight pair, else 2; those round a hole are as many as its rank."""
+        if self.hole is not None:
+            return 2 if self.hole.rank == 2 else 1
+        return 1 if len(self.folds) == 2 else 2
+
+    @property
+    def has_form(self) -> bool:
+        """Whether the second-order condition is not empty."""
+        return len(self.folds) > 2 if self.hole is None else self.hole.rank > 1
 
     def form(self, w: Sequence[Number]) -> Number:
         """The left side of the second-order condition at w: twice the area of the gradient polygon.
@@ -53,13 +89,17 @@ class Star:
         return gradient
 
     def only(self, folds: Iterable[Edge]) -> Star:
-        """The star of these folds alone; the other folds are held flat."""
+        """The star of these folds alone; the other folds are held flat.
+
+        That of a hole keeps its number of conditions, which may now depend on each other.
+        """
         wanted = set(folds)
         kept = [k for k, edge in enumerate(self.folds) if edge in wanted]
         return Star(
             self.vertex,
             tuple(self.folds[k] for k in kept),
             tuple(self.directions[k] for k in kept),
+            self.hole,
         )
 
     def foldable(self) -> tuple[int, ...]:
@@ -113,7 +153,15 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
     >>> stars(corner)[4].folds
     ((2, 4), (0, 4))
     """
-    gone = set(flat)
+    pattern.check_disk()
+    return flat_closure(pattern, set(flat))
+
+
+def flat_closure(pattern: PanelPattern, gone: set[Edge]) -> Mapping[int, Star]:
+    """The stars of interior vertices as `stars` has them; holes, if there are any, do not count.
+
+    `gone` has the folds that are held flat, and receives all others that stay flat.
+    """
     remaining: dict[int, Star] = {}
     waiting = dict.fromkeys(pattern.interior)
     while waiting:
@@ -127,6 +175,19 @@ def stars(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int, Star
                     waiting[u] = None
         remaining[v] = star.only(star.folds[k] for k in kept)
     return MappingProxyType({v: remaining[v] for v in pattern.interior if remaining[v].folds})
+
+
+def incidence(stars: Mapping[int, Star]) -> dict[Edge, tuple[int, ...]]:
+    """The stars that each fold belongs to.
+
+    >>> incidence({0: Star(0, ((0, 1), (0, 2)), ((1, 0), (-2, 0)))})
+    {(0, 1): (0,), (0, 2): (0,)}
+    """
+    found: dict[Edge, list[int]] = {}
+    for v, star in stars.items():
+        for edge in star.folds:
+            found.setdefault(edge, []).append(v)
+    return {edge: tuple(at) for edge, at in found.items()}
 
 
 def star_at(pattern: PanelPattern, vertex: int, flat: Container[Edge] = ()) -> Star:

@@ -70,6 +70,8 @@ def check_coordinates(points: Iterable[Sequence[Number]]) -> None:
     products = 0
     for vertex, point in enumerate(points):
         for part in (part for number in point for part in _parts(number)):
+            if -_SHORT < part.numerator < _SHORT and part.denominator < _SHORT:
+                continue
             above, below = _digits(part.numerator), _digits(part.denominator)
             longest = max(above, below)
             if longest > MOST_COORDINATE:
@@ -144,8 +146,12 @@ def check_compared(boxes: Sequence[Sequence[Any]]) -> None:
         )
 
 
+_SHORT: Final = 1 << int((LONG_COORDINATE - 1) / _DIGITS_A_BIT)
+"""Integers below this are no long coordinates."""
+
+
 def _parts(number: Number) -> Sequence[Fraction]:
-    return getattr(number, "coefficients", None) or (Fraction(number),)  # type: ignore[arg-type]
+    return getattr(number, "coefficients", None) or (number,)  # type: ignore[return-value]
 
 
 def _digits(number: int) -> int:

@@ -81,25 +81,26 @@ def matches(values: FloatArray, within: float, radicand: int) -> list[Match | No
     A random number lies within `within` of one of the `rank` smallest candidates modulo 1 with
     probability at most 2 * within * rank; `bits` is minus the binary logarithm of this.
     """
-    table = candidates(radicand)
-    small = table.rank <= _CHANCE / (2 * within)
-    if not small.any():
+    table, highest = candidates(radicand), _CHANCE / (2 * within)
+    if highest < 1:  # no candidate has so low a rank
         return [None] * len(values)
-    index = np.flatnonzero(small)
-    near = table.values[index]
-    # Modulo 1, values just below 1 are near 0.
-    index = np.concatenate([index, index, index])
-    near = np.concatenate([near - 1, near, near + 1])
     parts = values - np.floor(values)
-    low = np.searchsorted(near, parts - within, side="left")
-    high = np.searchsorted(near, parts + within, side="right")
+    # Modulo 1, values just below 1 are near 0.
+    turned = parts + np.array([[1.0], [0.0], [-1.0]])
+    low = np.searchsorted(table.values, turned - within, side="left")
+    high = np.searchsorted(table.values, turned + within, side="right")
     field = field_of(radicand)
     smallest: list[Match | None] = []
-    for value, start, end in zip(values, low, high, strict=True):
-        if start == end:
+    for value, starts, ends in zip(values, low.T.tolist(), high.T.tolist(), strict=True):
+        near = [
+            start + int(np.argmin(table.rank[start:end]))
+            for start, end in zip(starts, ends, strict=True)
+            if start < end
+        ]
+        k = min(near, key=lambda k: int(table.rank[k]), default=None)
+        if k is None or table.rank[k] > highest:
             smallest.append(None)
             continue
-        k = min(index[start:end], key=lambda k: int(table.rank[k]))
         q, whole = int(table.denominators[k]), round(float(value - table.values[k]))
         rational = Fraction(int(table.numerators[k]) + whole * q, q)
         root = Fraction(int(table.roots[k]), q)

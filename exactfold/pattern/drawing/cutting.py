@@ -20,7 +20,6 @@ import networkx as nx
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.plurals import counted
 from exactfold.errors import FoldError, NotADiskError
 from exactfold.pattern.drawing.drawing import Drawing, Line, Point
 from exactfold.pattern.drawing.mending import floats
@@ -36,7 +35,6 @@ _SHARE: Final = 1 / 8
 """The width of a strip, at most, as a share of the lines that end on a slit."""
 _TRIALS: Final = 4
 _BITS: Final = 6  # of the factors that shorten lines
-_NAMED: Final = 5
 
 
 def pieces(
@@ -46,9 +44,10 @@ def pieces(
 
     `faces` are the counter-clockwise cycles of its bounded faces. A line B or C between two faces
     is a cut. Also returns a point of each piece without creases, and how far creases at slits were
-    shortened at most.
+    shortened at most. A piece may have holes: in its drawing only lines B surround them.
 
-    Raises `NotADiskError` for a piece with holes, and `FoldError` if slits are too close together.
+    Raises `NotADiskError` for a piece that hangs together only by a point, also where a slit or a
+    hole touches the edge or another, and `FoldError` if slits are too close together.
 
     >>> points = ((0, 0), (2, 0), (4, 0), (4, 4), (0, 4), (2, 2), (2, 4))
     >>> rim = [(0, 1), (1, 2), (2, 3), (3, 6), (6, 4), (4, 0)]
@@ -59,6 +58,7 @@ def pieces(
     >>> len(slit.points), len(slit.lines), alone
     (8, 11, [])
     """
+    drawing, faces, lines = _halved(drawing, faces, lines)
     letters = {frozenset(line[:2]): line.letter for line in lines}
     left = {side: k for k, face in enumerate(faces) for side in _sides(face)}
     folds = {
@@ -80,11 +80,48 @@ def pieces(
     for members in components:
         if len(members) > 1:
             piece = _Piece(drawing, places, [faces[k] for k in members], folds, letters, {*left})
-            piece.check_holes()
             made, moved = piece.opened(gaps)
             opened.append(made)
             farthest = max(farthest, moved)
     return opened, [faces[k][0] for k in single], farthest
+
+
+def _halved(
+    drawing: Drawing, faces: Sequence[Cycle], lines: Sequence[Line]
+) -> tuple[Drawing, Sequence[Cycle], Sequence[Line]]:
+    """The same with a point in the middle of each cut that meets no other cut and no edge.
+
+    Such a slit has two sides between the same two points.
+    """
+    sides = {side for face in faces for side in _sides(face)}
+    single = {frozenset(side) for side in sides if side[::-1] not in sides}
+    at = Counter(
+        v
+        for line in lines
+        if line.letter in "BC" or frozenset(line[:2]) in single
+        for v in line[:2]
+    )
+    points = list(drawing.points)
+    middle: dict[frozenset[int], int] = {}
+    kept: list[Line] = []
+    for line in lines:
+        a, b, letter = line
+        if letter not in "BC" or frozenset((a, b)) in single or at[a] > 1 or at[b] > 1:
+            kept.append(line)
+            continue
+        (ax, ay), (bx, by) = points[a], points[b]
+        middle[frozenset((a, b))] = m = len(points)
+        points.append(((ax + bx) / Fraction(2), (ay + by) / Fraction(2)))
+        kept += [Line(a, m, letter), Line(m, b, letter)]
+    if not middle:
+        return drawing, faces, lines
+    cycles = [
+        tuple(
+            v for a, b in _sides(face) for v in (a, middle.get(frozenset((a, b)))) if v is not None
+        )
+        for face in faces
+    ]
+    return replace(drawing, points=tuple(points)), cycles, kept
 
 
 @dataclass
@@ -130,41 +167,6 @@ class _Piece:
     def _is_cut(self, side: Side) -> bool:
         return not self._is_fold(side) and side[::-1] in self.inside
 
-    # --- holes -----------------------------------------------------------------------------------
-
-    def check_holes(self) -> None:
-        """Raises `NotADiskError` if the boundary is not one loop, by the Euler characteristic."""
-        rim = [side for side in self.following if not self._is_fold(side)]
-        folded = (len(self.following) - len(rim)) // 2
-        if len(self.fans) - folded - len(rim) + len(self.faces) == 1:
-            return
-        loops, seen = [], set()
-        for first in rim:
-            loop, side = [], first
-            while side not in seen:
-                seen.add(side)
-                loop.append(side[0])
-                side = self.following[side]
-                while self._is_fold(side):
-                    side = self.following[side[::-1]]
-            if loop:
-                loops.append(loop)
-        extent = [float(np.ptp(self.places[loop], axis=0).sum()) for loop in loops]
-        outer = int(np.argmax(extent))
-        holes = [loop for k, loop in enumerate(loops) if k != outer]
-        named = [
-            f"near ({x:.6g}, {y:.6g}) with {counted(len({*loop}), 'corner')}"
-            for loop in holes[:_NAMED]
-            for x, y in [self.places[loop].mean(axis=0)]
-        ]
-        more = ", ..." if len(holes) > _NAMED else ""
-        what = f"{len(holes)} holes" if len(holes) > 1 else "a hole"
-        raise NotADiskError(
-            f"the sheet has {what}, {', '.join(named)}{more}: sheets with holes are not counted "
-            "yet, nor are sheets with slits that do not begin at the edge of the paper",
-            vertices=holes[0],
-        )
-
     # --- slits -----------------------------------------------------------------------------------
 
     def opened(self, gaps: Mapping[int, int]) -> tuple[Drawing, float]:
@@ -184,7 +186,8 @@ class _Piece:
         if pinched:
             raise NotADiskError(
                 f"the sheet hangs together only by vertex {pinched[0]}, near "
-                f"({self.places[pinched[0]][0]:.6g}, {self.places[pinched[0]][1]:.6g})",
+                f"({self.places[pinched[0]][0]:.6g}, {self.places[pinched[0]][1]:.6g}), where cuts "
+                "or holes touch: move them apart, or let a cut join them",
                 vertices=pinched,
             )
         lengths = [

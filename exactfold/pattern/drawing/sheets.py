@@ -14,6 +14,7 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold.errors import DisconnectedError, FoldError, MalformedPatternError
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.joining import joined
 from exactfold.pattern.drawing.mending import Repair, floats, lost, repair, used, with_lines
 
 _NAMED: Final = 5
@@ -66,9 +67,9 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
     left out.
 
     Raises `MalformedPatternError` if the lines enclose nothing or no piece has a crease,
-    `NotADiskError` for a sheet with a hole between panels, and `FoldError` for a line B between two
-    panels. Raises `DisconnectedError` for creases inside a panel that no line joins to the rest,
-    and for lines that enclose nothing; such lines are not dropped here.
+    `NotADiskError` for a sheet that hangs together only by a point, and `FoldError` for a line B
+    between two panels. Raises `DisconnectedError` for creases inside a panel that no line joins to
+    the rest, and for lines that enclose nothing; such lines are not dropped here.
     """
     parts = _parts(drawing)
     if not parts:
@@ -78,6 +79,8 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
         )
     places = floats(drawing.points)
     _check_all(drawing, parts, places)
+    drawing, parts, through = _joined(drawing, parts)
+    places = floats(drawing.points)
     made: list[Drawing] = []
     alone: list[int] = []
     slits: list[int] = []
@@ -110,8 +113,13 @@ def sheets(drawing: Drawing) -> tuple[tuple[Drawing, ...], list[Repair]]:
         f"cuts ({counted(len(slits), 'line')}) are opened: creases end {farthest:.2g} before "
         "them; no angle and no way to fold changes, and contacts are those of the open sheet"
     )
+    slit = (
+        f"{counted(len(through), 'slit')} through panels that go all round other creases: each "
+        "stays one rigid panel, so that no way to fold changes"
+    )
     points = drawing.points
     reports = repair("border", len(alone), alone, points, empty_ones)
+    reports += repair("border", len(through), through, points, slit)
     cuts = repair("border", len(slits), slits, points, opened)
     reports += [replace(each, cuts=True) for each in cuts]
     return tuple(made), [replace(each, loud=True) for each in reports]
@@ -183,6 +191,41 @@ def _check_all(drawing: Drawing, parts: Sequence[_Part], places: FloatArray) -> 
         )
 
 
+def _joined(drawing: Drawing, parts: list[_Part]) -> tuple[Drawing, list[_Part], list[int]]:
+    """The drawing with slits to creases and cuts that a panel goes all round, and their ends."""
+    through: list[int] = []
+    while True:
+        places = floats(drawing.points)
+        enclosing = _enclosing(parts, places)
+        for part, outer in zip(parts, enclosing, strict=True):
+            if outer and _is_inside_a_panel(part):
+                around = min(outer, key=lambda m: _area(places, parts[m].outline[::-1]))
+                beside = [k for k, other in enumerate(enclosing) if other == outer]
+                sides = [side for k in beside if parts[k] is not part for side in _rim(parts[k])]
+                spot = places[part.outline[0]]
+                face = next(
+                    (f for f in parts[around].faces if _encloses(places[list(f)], spot)), ()
+                )
+                made = joined(drawing, _rim(part), [*_sides(face), *sides] if face else [])
+                if made is not None:
+                    through.append(len(drawing.points))
+                    drawing, parts = made, _parts(made)
+                    break
+        else:
+            return drawing, parts, through
+
+
+def _rim(part: _Part) -> list[tuple[int, int]]:
+    return _sides(part.outline)
+
+
+def _is_inside_a_panel(part: _Part) -> bool:
+    """Whether a part inside others has cuts between creases, which are round it, too."""
+    boundary = {frozenset(pair) for pair in _rim(part)}
+    letters = {line.letter for line in part.lines if frozenset(line[:2]) in boundary}
+    return not letters <= {*"BC"} and any(line.letter == "C" for line in part.lines)
+
+
 def _check_nested(
     part: _Part, outer: Sequence[_Part], is_alone: bool, places: FloatArray, coloured: bool
 ) -> None:
@@ -200,8 +243,9 @@ def _check_nested(
         if any(line.letter == "C" for line in part.lines):
             how = " by `--colours '#0f0=U,#ff0=U'`"
             why = (
-                "sheets with slits that do not begin at the edge of the paper are not counted yet; "
-                "to read this one without cuts, give its cuts and flat lines the letter U"
+                "a panel that goes all round other creases is not counted yet; draw a line F from "
+                "them to the rest, or, to read this one without cuts, give its cuts and flat lines "
+                "the letter U"
                 f"{how if coloured else ''}"
             )
         raise DisconnectedError(

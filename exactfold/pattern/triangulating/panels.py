@@ -51,7 +51,9 @@ def triangles_by_face(
 def cut_panels(pattern: PanelPattern) -> PanelPattern:
     """The sheet with all panels cut into triangles."""
     joins = triangulating_edges(pattern)
-    return PanelPattern(pattern.vertices, (*pattern.edges, *joins)) if joins else pattern
+    if not joins:
+        return pattern
+    return PanelPattern(pattern.vertices, (*pattern.edges, *joins), pattern.holes)
 
 
 def _triangles(points: Sequence[Point], face: Sequence[int]) -> list[tuple[int, ...]]:

@@ -76,7 +76,7 @@ def converted(opened: Opened, *, triangulate: bool = False) -> Converted:
     pattern = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
     joins = triangulating_edges(pattern) if triangulate else ()
     if joins:
-        pattern = PanelPattern(pattern.vertices, (*pattern.edges, *joins))
+        pattern = PanelPattern(pattern.vertices, (*pattern.edges, *joins), pattern.holes)
         if any(len(face) > 3 for face in pattern.faces):
             raise FoldError("a panel could not be cut into triangles")
     faces = sheet.triangles if isinstance(sheet, CreasePattern) else pattern.faces

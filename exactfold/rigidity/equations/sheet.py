@@ -10,13 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from exactfold._support.arrays import BigArray, IndexArray
+from exactfold._support.arrays import BigArray, BoolArray, IndexArray, IntArray
 from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.rigidity.equations.gauge import pattern_size
 from exactfold.rigidity.equations.problem import Problem
 
 """`BigArray`: an object array of Python integers of any size."""
+Integers = IntArray | BigArray
+
+_SHORT = 2**29
+"""With coordinates up to this, twice the area of a triangle is below 2^63."""
 
 
 @dataclass(frozen=True)
@@ -151,15 +155,48 @@ class Folds:
     @classmethod
     def of(cls, pattern: CreasePattern) -> Folds:
         """The fold data of a pattern, in its integer coordinates."""
-        rows = [(i, j, *pattern.opposite((i, j))) for i, j in pattern.folds]
-        corners = np.array(rows, dtype=np.intp).reshape(-1, 4)
-        points = np.array(pattern.integer_vertices[0], dtype=object)
+        corners = _corners(pattern)
+        whole = pattern.integer_vertices[0]
+        short = max((abs(x) for point in whole for x in point), default=0) <= _SHORT
+        # Twice an area is below 2^63 then: 64 bits are exact, and quicker.
+        points = np.array(whole, dtype=np.int64 if short else object).reshape(-1, 2)
         i, j, a, b = (points[corners[:, k]] for k in range(4))
         left, right = _twice_area(i, j, a), _twice_area(j, i, b)
         # Cramer: sum_k (-1)^k det(the other three) h_k vanishes on affine functions.
         weights = np.stack([-_twice_area(j, a, b), _twice_area(i, a, b), right, left], axis=1)
         d = j - i
-        return cls(corners, weights, left, right, d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1])
+        squared_length = d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1]
+        return cls(corners, *(x.astype(object) for x in (weights, left, right, squared_length)))
+
+    def at(self, vertices: BoolArray) -> tuple[Folds, IndexArray]:
+        """The folds with an end among the vertices of a mask, and the vertices that they need.
+
+        Vertex k of these folds is vertex number k of the array.
+        """
+        near = vertices[self.corners[:, :2]].any(axis=1)
+        names, places = np.unique(self.corners[near], return_inverse=True)
+        parts = (self.weights, self.left, self.right, self.squared_length)
+        return Folds(places.reshape(-1, 4), *(part[near] for part in parts)), names
+
+    def summed(self, first: BigArray, second: BigArray, count: int) -> BigArray:
+        """For each of `count` vertices, the sum of `first` over the folds (v, j), and of `second`
+        over the folds (i, v).
+        """
+        total = np.array([0] * count, dtype=object)
+        if len(first):
+            by_end, starts, ends = self._by_end
+            total[ends] = np.add.reduceat(np.concatenate([first, second])[by_end], starts)
+        return total
+
+    @cached_property
+    def _by_end(self) -> tuple[IndexArray, IndexArray, IndexArray]:
+        """The two ends of all folds in the order of the vertices: their places, where each vertex
+        begins, and these vertices.
+        """
+        ends = self.corners[:, :2].T.ravel()
+        by_end = np.argsort(ends, kind="stable")
+        vertices, starts = np.unique(ends[by_end], return_index=True)
+        return by_end, starts, vertices
 
     def bends(self, heights: BigArray) -> BigArray:
         """The values f_e at integer heights, shape (E,); f_e is positive for a valley."""
@@ -169,6 +206,20 @@ class Folds:
         return np.asarray(total)
 
 
-def _twice_area(a: BigArray, b: BigArray, c: BigArray) -> BigArray:
+def _corners(pattern: CreasePattern) -> IndexArray:
+    """The ends i, j of every fold, and the third vertices of its faces, left and right."""
+    folds = np.array(pattern.folds, dtype=np.intp).reshape(-1, 2)
+    count = len(pattern.vertices)
+    around = np.array(pattern.triangles, dtype=np.intp).reshape(-1, 3).T
+    sides = np.concatenate([around[k] * count + around[k - 2] for k in range(3)])
+    by_side = np.argsort(sides)
+    third = np.concatenate([around[k - 1] for k in range(3)])[by_side]
+    i, j = folds.T
+    asked = (i * count + j, j * count + i)
+    faces = [third[np.searchsorted(sides, side, sorter=by_side)] for side in asked]
+    return np.stack([i, j, *faces], axis=1)
+
+
+def _twice_area(a: Integers, b: Integers, c: Integers) -> Integers:
     u, v = b - a, c - a
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])

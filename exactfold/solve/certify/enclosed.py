@@ -55,7 +55,7 @@ def _enclosed(
         if refined is None:
             break
         heights = refined
-        outcome = enclose(sheet, heights.values, heights.denominator, heights.bits)
+        outcome = _tested(sheet, heights)
         if isinstance(outcome, tuple) or outcome.signs != wanted:
             failed = outcome if isinstance(outcome, tuple) else ()
             break
@@ -71,16 +71,30 @@ def _enclosed(
     if best is not None and not best.complete:
         best = rational(sheet, best, wanted) or best
     if best is None and not failed:
-        rough = enclose(sheet, heights.values, heights.denominator, heights.bits)
+        rough = _tested(sheet, heights)
         failed = rough if isinstance(rough, tuple) else ()
     return best, failed
 
 
+def _tested(sheet: VertexEquations, heights: Heights) -> Enclosure | tuple[int, ...]:
+    return enclose(
+        sheet, heights.values, heights.denominator, heights.bits, known=heights.curvature
+    )
+
+
 def _lifted(part: Merged, wanted: Mapping[int, int], heights: Heights) -> Enclosure | None:
-    """The enclosure of the branch with all folds decided, from the sheet with merged faces."""
+    """The enclosure of the branch with all folds decided, from the sheet with merged faces.
+
+    The heights are tried as they are first, as they nearly are heights of that sheet.
+    """
     sheet = part.sheet
+    start = replace(heights, values=heights.values[list(part.labels)], curvature=None)
+    as_they_are = _tested(sheet, start)
+    if isinstance(as_they_are, Enclosure):
+        lifted = part.lifted(deduced(sheet, as_they_are), wanted)
+        if lifted is not None and lifted.complete:
+            return lifted
     signs = np.array([float(wanted[part.labels[v]]) for v in sheet.unknowns])
-    start = replace(heights, values=heights.values[list(part.labels)])
     proof, _ = _enclosed(sheet, FloatSheet.of(sheet), signs, start, None, fewer=False)
     lifted = None if proof is None else part.lifted(proof, wanted)
     return lifted if lifted is not None and lifted.complete else None

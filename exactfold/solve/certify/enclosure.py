@@ -9,10 +9,14 @@ from math import isqrt
 
 import numpy as np
 
-from exactfold._support.arrays import BigArray, FloatArray, IndexArray
-from exactfold.rigidity.equations.sheet import VertexEquations
+from exactfold._support.arrays import BigArray, FloatArray, IndexArray, IntArray
+from exactfold.rigidity.equations.sheet import Folds, VertexEquations
 
 _LENGTH_BITS = 64
+_CLEAR = 2.0**-20
+"""Sums of floats have a sign if they are at least this share of the sum of the sizes; vertices have
+fewer than 2^30 folds."""
+_LEAST_SIZE, _LARGEST_SIZE = 2.0**-800, 2.0**900
 _LEAST_COST = 2.0**-500
 """Smaller costs are rounded up to this, as their squares may be too small for normal floats."""
 
@@ -61,24 +65,25 @@ class Curvatures:
     high: BigArray
 
 
-def curvatures(sheet: VertexEquations, heights: BigArray, bits: int) -> Curvatures:
-    """Bounds of all K_v: 2 K_v = sum_w omega_vw (h_w - h_v), with each term rounded down."""
-    folds = sheet.folds
+def curvatures(folds: Folds, heights: BigArray, bits: int) -> Curvatures:
+    """Bounds of all K_v: 2 K_v = sum_w omega_vw (h_w - h_v), with each term rounded down.
+
+    They are right at the vertices all of whose folds are among `folds`.
+    """
     i, j = folds.corners[:, 0], folds.corners[:, 1]
     bends = folds.bends(heights)
     terms = (bends * (heights[j] - heights[i]) << bits) // (folds.left * folds.right)
-    count = len(sheet.pattern.vertices)
-    low = np.array([0] * count, dtype=object)
-    degree = np.array([0] * count, dtype=object)
-    np.add.at(low, i, terms)
-    np.add.at(low, j, -terms - 1)  # -x >= -(floor(x) + 1)
-    np.add.at(degree, i, 1)
-    np.add.at(degree, j, 1)
-    return Curvatures(bits, bends, low, low + degree)
+    low = folds.summed(terms, -terms - 1, len(heights))  # -x >= -(floor(x) + 1)
+    degree = np.bincount(folds.corners[:, :2].ravel(), minlength=len(heights))
+    return Curvatures(bits, bends, low, low + degree.astype(object))
 
 
 def enclose(
-    sheet: VertexEquations, heights: BigArray, denominator: int, bits: int
+    sheet: VertexEquations,
+    heights: BigArray,
+    denominator: int,
+    bits: int,
+    known: Curvatures | None = None,
 ) -> Enclosure | tuple[int, ...]:
     """The branch near rational heights, or the vertices at which the test fails.
 
@@ -93,7 +98,8 @@ def enclose(
     every vertex has one, the solution is simple and its signs are e.
 
     `heights` are integers over `denominator`; they must reproduce the boundary heights exactly.
-    `bits` is the extra precision of the rounded divisions. Arithmetic is exact, or rounded in the
+    `bits` is the extra precision of the rounded divisions, and `known` are the curvatures of these
+    heights with it, if they have been computed already. Arithmetic is exact, or rounded in the
     safe direction. A vertex is returned if K_v(h') > 0 or the nappe of h' could not be proved at
     it.
 
@@ -101,7 +107,7 @@ def enclose(
     convex.
     """
     check_hypotheses(sheet, heights, denominator)
-    curvature = curvatures(sheet, heights, bits)
+    curvature = curvatures(sheet.folds, heights, bits) if known is None else known
     signs = nappes(sheet, curvature.bends)
     failed = tuple(v for v in sheet.unknowns if curvature.low[v] <= 0 or not signs[v])
     if failed:
@@ -132,22 +138,52 @@ def nappes(sheet: VertexEquations, bends: BigArray) -> dict[int, int]:
     The lengths are rounded to `_LENGTH_BITS` binary places, and omega to as many below its largest
     value.
     """
-    folds = sheet.folds
-    lengths = np.array([isqrt(s << 2 * _LENGTH_BITS) for s in folds.squared_length], dtype=object)
-    areas = folds.left * folds.right
+    near = _nappes_in_floats(sheet, bends)
+    if near.all():
+        return dict(zip(sheet.unknowns, near.tolist(), strict=True))
+    folds, signs = sheet.folds, np.zeros(len(sheet.pattern.vertices), dtype=np.int64)
+    signs[list(sheet.unknowns)] = near
+    open_ = (signs[folds.corners[:, :2]] == 0).any(axis=1)
+    squares, areas = folds.squared_length[open_], (folds.left * folds.right)[open_]
+    lengths = np.array([isqrt(s << 2 * _LENGTH_BITS) for s in squares], dtype=object)
     # omega has the size of bends / areas; keep _LENGTH_BITS binary places of the smallest one.
     shift = max((int(c).bit_length() for c in areas), default=0) + _LENGTH_BITS
-    omega = (bends << shift) // areas
+    omega = (bends[open_] << shift) // areas
     # |L omega - lengths omega| <= (lengths + 1) + |omega| + 1 in units of the last place.
     terms, slack = lengths * omega, lengths + abs(omega) + 2
-    count = len(sheet.pattern.vertices)
-    total, error = (np.array([0] * count, dtype=object) for _ in range(2))
+    total, error = (np.array([0] * len(signs), dtype=object) for _ in range(2))
     for end in (0, 1):
-        np.add.at(total, folds.corners[:, end], terms)
-        np.add.at(error, folds.corners[:, end], slack)
+        np.add.at(total, folds.corners[open_, end], terms)
+        np.add.at(error, folds.corners[open_, end], slack)
     return {
-        v: 0 if abs(total[v]) <= error[v] else -1 if total[v] > 0 else 1 for v in sheet.unknowns
+        v: int(signs[v]) or (0 if abs(total[v]) <= error[v] else -1 if total[v] > 0 else 1)
+        for v in sheet.unknowns
     }
+
+
+def _nappes_in_floats(sheet: VertexEquations, bends: BigArray) -> IntArray:
+    """The nappes at the unknowns that floats prove; 0 at the others.
+
+    Each omega_vj is rounded once, and each L_j twice. So a sum of n products L_j omega_vj is off by
+    less than (n + 5) 2^-53 times the sum of their sizes (Higham, Accuracy and Stability of
+    Numerical Algorithms, section 3.1), if no number leaves the normal range.
+    """
+    folds, count = sheet.folds, len(sheet.pattern.vertices)
+    none = np.zeros(len(sheet.unknowns), dtype=np.int64)
+    try:
+        omega = (bends / (folds.left * folds.right)).astype(np.float64)
+        lengths = np.sqrt(folds.squared_length.astype(np.float64))
+    except OverflowError:
+        return none
+    ends = folds.corners[:, :2].T.ravel()
+    with np.errstate(all="ignore"):
+        terms = np.tile(lengths * omega, 2)
+        total = np.bincount(ends, terms, count)[list(sheet.unknowns)]
+        sizes = np.bincount(ends, abs(terms), count)[list(sheet.unknowns)]
+        # Below the normal range, a product is off by less than 2^-900.
+        normal = (sizes > _LEAST_SIZE) & (sizes < _LARGEST_SIZE) & (lengths.max() < _LARGEST_SIZE)
+        clear = abs(total) > _CLEAR * sizes
+    return np.where(normal & clear, -np.sign(total), none).astype(np.int64)
 
 
 def _squared_distance(sheet: VertexEquations, curvature: Curvatures, denominator: int) -> Fraction:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exactfold._support.arrays import FloatArray
+from exactfold._support.arrays import FloatArray, IndexArray
 from exactfold.solve.numeric.linear_start import start_size
 from exactfold.solve.numeric.sparse_sheet import FloatSheet, SingularError
 
@@ -24,7 +24,7 @@ _EXCESS = 2.0**-70
 
 Steps towards a flat star would gain one bit each. The enclosure aims at an excess, too.
 """
-_MANY = 1000
+MANY = 1000
 """Sheets with more unknowns are smoothed at first; on small ones, no vertex shortens many steps."""
 _SMOOTHING = 30.0
 """The smoothing of the first step, as a share of the l_v at the start: this, divided by n.
@@ -36,8 +36,8 @@ _QUICK = 0.05
 _SHARPER = 0.01
 _FAST = 0.75
 _SMALL = 0.05
-_RINGS = 4
-_FEW = 0.05
+RINGS = 4
+FEW = 0.05
 _PATCH_STEPS = 20
 _PATCH_HALVINGS = 20
 _PATCH_GAIN = 0.01
@@ -126,7 +126,7 @@ def solve(
     that halves the sum, and fast as soon as the sum does. It is 0 in the end. If that finds no
     zero, and on sheets with at most 1000 unknowns, all steps are plain.
     """
-    if start is None and sheet.n > _MANY:
+    if start is None and sheet.n > MANY:
         end = _solve(sheet, signs, None, _SMOOTHING / sheet.n, progress)
         if not end.failure:
             return end
@@ -214,10 +214,8 @@ def _mended(
 
     None if there are no small patches, or if the sum of all |g_v| does not decrease.
     """
-    ascending = np.sort(values)
-    small = np.searchsorted(np.cumsum(ascending), _SMALL * ascending.sum())
-    chosen = np.flatnonzero(sheet.near(values >= ascending[small], _RINGS))
-    if len(chosen) > _FEW * sheet.n:
+    chosen = patches(sheet, values)
+    if chosen is None:
         return None
     part = sheet.part(chosen, point.x)
     x = point.x.copy()
@@ -225,6 +223,16 @@ def _mended(
     mended = Point.at(sheet, x, smoothing)
     after = np.abs(equations(sheet, mended, signs)[0])
     return (mended, after) if after.sum() < values.sum() else None
+
+
+def patches(sheet: FloatSheet, values: FloatArray) -> IndexArray | None:
+    """The unknowns near those with most of the sum of all |g_v|, given as `values`; None if these
+    are not few.
+    """
+    ascending = np.sort(values)
+    small = np.searchsorted(np.cumsum(ascending), _SMALL * ascending.sum())
+    chosen = np.flatnonzero(sheet.near(values >= ascending[small], RINGS))
+    return None if len(chosen) > FEW * sheet.n else chosen
 
 
 def _patched(sheet: FloatSheet, x: FloatArray, signs: FloatArray, smoothing: float) -> FloatArray:

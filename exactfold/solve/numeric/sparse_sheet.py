@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,10 @@ from exactfold.rigidity.equations.sheet import VertexEquations
 
 _DENSE = 150
 """SciPy takes a while to load, so that small sheets do without."""
+
+
+Solver = Callable[[FloatArray], FloatArray]
+"""Solves a linear system whose matrix has been factored."""
 
 
 class SingularError(ArithmeticError):
@@ -45,7 +50,7 @@ class FloatSheet:
         """The exact data as floats; each float is rounded from exact integers."""
         folds, size = sheet.folds, sheet.size
         areas = folds.left * folds.right
-        weights = (folds.weights * size**2 / areas[:, None]).astype(np.float64)
+        weights = ratio(folds.weights * size**2, areas[:, None])
         squares = (folds.squared_length / size**2).astype(np.float64)
         count = len(sheet.pattern.vertices)
         unknowns = np.array(sheet.unknowns, dtype=np.intp)
@@ -140,7 +145,7 @@ class FloatSheet:
                 columns = p.position[self.corners[:, k]]
                 ok = (rows >= 0) & (columns >= 0)
                 values = (self.lengths * self.weights[:, k])[ok] * self.line_factor[rows[ok]]
-                np.add.at(data, p.find(rows[ok], columns[ok]), values)
+                data += np.bincount(p.find(rows[ok], columns[ok]), values, len(data))
         return data
 
     def solve(
@@ -152,7 +157,18 @@ class FloatSheet:
         *,
         pivots: bool = False,
     ) -> FloatArray:
-        """The x with J x = right; J has the rows of_lines_v dl_v/dx + of_forms_v dK_v/dx, scaled.
+        """The x with J x = right, for the J that `solver` factors; raises `SingularError`."""
+        return self.solver(omega, of_lines, of_forms, pivots=pivots)(right)
+
+    def solver(
+        self,
+        omega: FloatArray,
+        of_lines: FloatArray,
+        of_forms: FloatArray,
+        *,
+        pivots: bool = False,
+    ) -> Solver:
+        """Factors J, with the rows of_lines_v dl_v/dx + of_forms_v dK_v/dx, scaled.
 
         The scale is that of K_v. J has the pattern of a planar graph. It is factored by sparse LU
         in minimum-degree order, with pivots on the diagonal unless they vanish, as another order
@@ -166,17 +182,12 @@ class FloatSheet:
         if self.n <= self.dense:
             matrix = np.zeros((self.n, self.n))
             matrix[p.rows, p.columns] = data
-            try:
-                return np.asarray(np.linalg.solve(matrix, right))
-            except np.linalg.LinAlgError as error:
-                raise SingularError(str(error)) from None
+            return partial(_dense_solution, matrix)
         if pivots:
-            return np.asarray(_factors(data, p.rows, p.pointers, "COLAMD").solve(right))
+            return partial(_solution, _factors(data, p.rows, p.pointers, "COLAMD"))
         order, places = self._elimination
         factors = _factors(data[places.entries], places.rows, places.pointers, "NATURAL")
-        x = np.empty_like(right)
-        x[order] = factors.solve(right[order])
-        return x
+        return partial(_solution, factors, order=order)
 
     @cached_property
     def _elimination(self) -> tuple[IndexArray, _Columns]:
@@ -260,6 +271,22 @@ def _cone_curvature(sheet: VertexEquations) -> FloatArray:
         dot = ((d[:, 0] * e[:, 0] + d[:, 1] * e[:, 1]) / unit).astype(np.float64)
         total += np.bincount(v, np.tan(np.arctan2(cross, dot) / 2), len(points))
     return total
+
+
+def _dense_solution(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError as error:
+        raise SingularError(str(error)) from None
+
+
+def _solution(factors: Any, right: FloatArray, order: IndexArray | None = None) -> FloatArray:
+    """The solution of a factored system, whose unknowns are in this order."""
+    if order is None:
+        return np.asarray(factors.solve(right))
+    x = np.empty_like(right)
+    x[order] = factors.solve(right[order])
+    return x
 
 
 def _factors(data: FloatArray, rows: IndexArray, pointers: IndexArray, order: str) -> Any:

@@ -7,6 +7,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from running import BAD_INPUT, INVALID, PROVED, UNDECIDED, USAGE, error_class, run
 
+import exactfold
 from exactfold import random_square, schema
 from exactfold.design import actuate
 from exactfold.pattern import write_fold
@@ -229,3 +230,15 @@ def test_a_certificate_of_torques_for_panels_is_checked(tmp_path):
     branch = tmp_path / "b.json"
     assert run("actuate", "two-vertex", "--up", 4, "--certificate", branch).exit_code == PROVED
     assert "the branch is not self-foldable" in " ".join(run("check", branch).stdout.split())
+
+
+def test_letters_of_the_other_side_name_the_listed_branch() -> None:
+    """Its opposite vertex signs are those of another branch."""
+    one = run("actuate", "two-vertex", "--letters", "MVVVMVM")
+    other = run("actuate", "two-vertex", "--letters", "VMMMVMV")
+    assert "vertex signs     +-\n" in one.stdout
+    assert one.stdout == other.stdout
+    assert "other side of branch +-: the opposite torques drive it" in other.stderr
+    assert "other side" not in one.stderr
+    named = exactfold.actuate("two-vertex", letters="VMMMVMV")
+    assert named == exactfold.actuate("two-vertex", "+-")

@@ -174,6 +174,7 @@ def test_all_sheets_go_with_count_only(tmp_path: Path) -> None:
     assert run("count", path, "--sheet", 0).exit_code == USAGE
 
 
+@pytest.mark.slow
 def test_without_a_choice_the_sheets_are_listed(tmp_path: Path) -> None:
     path = several_sheets(tmp_path / "two.cp")
     listed = "sheet 1 with 1 fold, 2 x 2 at (3, 0); sheet 2 with 2 folds, 2 x 2 at (6, 0)"
@@ -357,6 +358,7 @@ def test_an_interruption_leaves_a_file_that_goes_on(tmp_path: Path, sent: signal
     assert out.read_bytes() == kept
 
 
+@pytest.mark.slow
 def test_a_batch_in_one_process_is_a_pipeline(tmp_path: Path) -> None:
     paths = squares(tmp_path, 2)
     done = process("count", *paths, "--json", "--jobs", 2)
@@ -388,6 +390,7 @@ def test_count_many_refuses_at_once(wrong: dict) -> None:
         count_many([random_square(2, seed=1)], **wrong)
 
 
+@pytest.mark.slow
 def test_count_many_on_processes() -> None:
     patterns = [random_square(3, seed=k) for k in range(4)]
     found = dict(count_many(patterns, jobs=2))
@@ -405,6 +408,7 @@ def square_or_die(number: int) -> int:
     return number**2
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_takes_no_other_job_with_it() -> None:
     found = dict(process_pool(2)(square_or_die, range(20)))
     assert isinstance(found.pop(13), WorkerDiedError)

@@ -14,6 +14,7 @@ from compact_files import bodies, chained
 from jsonschema import Draft202012Validator
 from old_listing import old_listing
 from running import BAD_INPUT, INVALID, PROVED, USAGE, error_class, run
+from sampling import slow_after
 
 from exactfold import random_square, schema
 from exactfold.branches import certificate, count_branches
@@ -33,7 +34,7 @@ def checked(*arguments: object) -> dict[str, Any]:
     return data
 
 
-@pytest.mark.parametrize("name", SHEETS)
+@pytest.mark.parametrize("name", slow_after(3, SHEETS))
 def test_the_list_is_that_of_count(tmp_path: Path, name: str) -> None:
     """Branch by branch, with all bounds of heights, of every shipped pattern."""
     file = tmp_path / "c.txt"

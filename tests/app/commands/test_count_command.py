@@ -218,6 +218,7 @@ def test_undecided_table_lists_what_is_open(tmp_path, monkeypatch):
     assert "no box around the candidate" in result.stdout
 
 
+@pytest.mark.slow
 def test_long_tables_are_cut_unless_all_is_asked_for():
     short = run("count", example_path("random-8")).stdout
     long = run("count", example_path("random-8"), "--all").stdout

@@ -290,6 +290,7 @@ def test_letters_name_a_way_of_rigid_panels(tmp_path, out):
     assert out.read_bytes() == other.read_bytes()
 
 
+@pytest.mark.slow
 def test_of_a_family_one_motion_is_written_and_said_so(out):
     result = run("bird-base", "--way", 3, "-o", out, "--json")
     assert result.exit_code == OK

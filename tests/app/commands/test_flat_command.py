@@ -87,6 +87,7 @@ def test_wrong_usage_and_bad_input(arguments, code):
     assert run("flat", *arguments).exit_code == code
 
 
+@pytest.mark.slow
 def test_where_ways_end():
     code, data = printed("fish-base", "--ways", "--letters", "FVVMVVMVV", "--limit", "600")
     assert code == PROVED

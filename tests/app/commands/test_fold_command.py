@@ -42,6 +42,7 @@ def test_the_other_side_is_the_mirror_image():
     assert "3-5 -180," in result.stdout
 
 
+@pytest.mark.slow
 def test_long_lists_of_folds_that_turn_back_are_cut(tmp_path):
     result = run("fold", "random-8", "--up", "", "--until", "return", "--through-nodes")
     lines = result.stdout.splitlines()
@@ -357,6 +358,7 @@ def test_a_certificate_proves_the_motion_and_its_contact(tmp_path):
     assert run("check", str(path)).stdout.startswith("VALID: the motion along the ray +-")
 
 
+@pytest.mark.slow
 def test_a_certificate_of_panels_proves_their_first_contact(tmp_path):
     path = tmp_path / "proof.json"
     how = ("fold", "zigzags", "--way", 3, "--frames", 2, "--certificate", str(path))
@@ -377,6 +379,7 @@ def test_a_certificate_of_panels_proves_their_first_contact(tmp_path):
     assert "PROVED: all vertices close exactly at all fold angles; the first contact is" in said
 
 
+@pytest.mark.slow
 def test_the_certificate_of_a_return_is_a_loop(tmp_path):
     path, out = tmp_path / "proof.txt", tmp_path / "m.fold"
     back = ("fold", "two-vertex", "--signs", "+-", "--until", "return", "--frames", 4)

@@ -43,6 +43,8 @@ COMMANDS = {
     "export": ["--signs", "+", "-o", "out.fold"],
     "motions": [],
     "actuate": ["--signs", "+"],
+    "tolerance": [],
+    "design": ["--maximise", "tolerance"],
     "assignments": [],
     "view": ["-o", "out.html"],
 }
@@ -118,6 +120,7 @@ def test_names_in_json_are_as_they_are(tmp_path, monkeypatch, two_vertex):
     assert "\x1b" not in done.stdout
 
 
+@pytest.mark.slow
 def test_names_that_are_no_text(tmp_path, two_vertex):
     """Bytes that are not UTF-8 in the name of a file."""
     shutil.copy(two_vertex, tmp_path / "b\udcff.fold")

@@ -7,6 +7,7 @@ import random
 import re
 from collections.abc import Sequence
 from fractions import Fraction
+from math import cos, radians, sin
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +91,7 @@ def test_json_has_both_answers(miura: Path) -> None:
     assert json.loads(run("count", "two-vertex", "--json").stdout)["meant"] is None
 
 
+@pytest.mark.slow
 def test_match_and_python_answer_about_the_same_sheet(miura: Path) -> None:
     matched = run("match", miura, "--json")
     assert matched.exit_code == PROVED
@@ -119,6 +121,7 @@ def test_all_commands_take_the_sheet_that_was_meant(
     assert "of the drawing there is a sheet with all of them - PROVED" in said
 
 
+@pytest.mark.slow
 def test_a_batch_takes_the_sheet_that_was_meant(miura: Path, by_hand: Path) -> None:
     result = run("count", miura, by_hand, "--json", "--jobs", 1)
     lines = {line["name"]: line for line in map(json.loads, result.stdout.splitlines())}
@@ -193,6 +196,43 @@ def test_a_relation_that_the_drawing_misses_by_far_is_refused(miura: Path) -> No
 
 
 @pytest.fixture
+def fan(tmp_path: Path) -> Path:
+    """Twelve lines through a point, 15 degrees apart, with noise of 1e-9."""
+    rng, points = random.Random(1), [(0.0, 0.0)]
+    for k in range(24):
+        x, y = cos(radians(15 * k)), sin(radians(15 * k))
+        largest = max(abs(x), abs(y))
+        points.append((x / largest, y / largest))
+    noise = [[x + rng.uniform(-1e-9, 1e-9) for x in point] for point in points]
+    edges = [(0, k) for k in range(1, 25)] + [(k, k % 24 + 1) for k in range(1, 25)]
+    data: dict[str, Any] = {"vertices_coords": noise, "edges_vertices": edges}
+    return written(tmp_path, {**data, "edges_assignment": ["U"] * 24 + ["B"] * 24}, "fan")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "options", "said"),
+    [
+        ("fan", ["parallel 0-1,0-2"], "parallel:0-1,0-2 contradicts grid:0-2, grid:0-1"),
+        (
+            "thin",
+            ["grid 0-4", "grid 2-4", "straight@4:0-2"],
+            "straight@4:0-2 contradicts grid:0-4, grid:2-4",
+        ),
+    ],
+)
+def test_a_relation_that_contradicts_others_is_refused_with_the_remedy(
+    pattern: str, options: Sequence[str], said: str, request: pytest.FixtureRequest
+) -> None:
+    """Those of the fan are inferred; those of the thin sheet, at multiples of 4 degrees, stated."""
+    unit = ["--unit", 45] if pattern == "thin" else []
+    also = [word for option in options for word in ("--also", option)]
+    result = run("count", request.getfixturevalue(pattern), *unit, *also)
+    assert (result.exit_code, result.stdout) == (USAGE, "")
+    remedy = "leave it out, or leave one of these out (--without)"
+    assert f"the relation {said}: {remedy}" in " ".join(result.stderr.split())
+
+
+@pytest.fixture
 def thin(tmp_path: Path) -> Path:
     """A square with five folds at a vertex, two of which are 4 degrees apart; it is exact."""
     path = tmp_path / "thin.fold"
@@ -225,6 +265,7 @@ def test_what_is_stated_of_an_exact_drawing_has_no_noise(thin: Path) -> None:
     assert {"sectors@4:0-1,1-2", "sectors@4:1-2,2-3"} <= {r.name for r in sectors.relations}
 
 
+@pytest.mark.slow
 def test_a_doubt_without_a_noise_level_says_so(
     miura: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -241,6 +282,7 @@ def test_a_denominator_takes_no_relations(thin: Path) -> None:
     assert "--snap 100 rounds all digits: leave out" in result.stderr
 
 
+@pytest.mark.slow
 def test_nothing_is_inferred_from_a_drawing_by_hand(by_hand: Path) -> None:
     result = run("count", by_hand)
     assert result.exit_code == UNDECIDED

@@ -13,7 +13,7 @@ from running import PROVED, run
 
 import exactfold
 from exactfold import schema
-from exactfold.branches import PeriodicCount
+from exactfold.branches import PeriodicCount, count_periodic
 from exactfold.errors import UsageError
 from exactfold.pattern import PeriodicPattern, read_cell
 from exactfold.pattern.data import example_path
@@ -68,9 +68,9 @@ def test_what_does_not_go_together(arguments: tuple[str, ...], message: str) -> 
 
 
 def test_a_sheet_that_is_not_periodic() -> None:
-    result = run("count", "two-vertex", "--direction", "1,2")
+    result = run("count", "h1-4", "--direction", "1,2")
     assert result.exit_code == 3
-    assert "not the cell of a periodic sheet" in " ".join(result.stderr.split())
+    assert "no two translations carry the border of the sheet" in " ".join(result.stderr.split())
 
 
 def test_a_pipe_is_not_read_to_see_whether_it_is_a_cell(tmp_path: Path) -> None:
@@ -104,5 +104,43 @@ def test_the_verb() -> None:
     assert isinstance(result.pattern, PeriodicPattern)
     with pytest.raises(UsageError, match="counted for one `direction`"):
         exactfold.count(cell)  # type: ignore[call-overload]
-    with pytest.raises(UsageError, match="only `progress` goes with"):
+    with pytest.raises(UsageError, match="only `limit` and `progress` go with"):
         exactfold.count(cell, direction=(1, 2), seed=1)  # type: ignore[call-overload]
+
+
+def test_a_drawing_is_taken_for_a_cell_aloud() -> None:
+    result = run("count", "miura", "--direction", "1,3", "--cell", "4,2")
+    assert result.exit_code == PROVED
+    assert result.stdout.startswith("1 way to start folding in the direction 1,3 - PROVED")
+    assert "2 vertices in a cell and the translations (90, 0) and (0, 160)" in result.stderr
+    assert "the border of the drawing counts as creases" in result.stderr
+    for arguments, message in (
+        (("miura", "--cell", "4,2"), "--cell goes with --direction"),
+        (("miura-cell", "--direction", "1,3", "--cell", "1,1"), "is a cell: leave out --cell"),
+        (("miura", "--direction", "1,3", "--cell", "4"), "is not two numbers of cells"),
+        (("miura", "--direction", "1,3", "--cell", "3,2"), "does not repeat 3-fold along (360, 0)"),
+    ):
+        refused = run("count", *arguments)
+        assert refused.exit_code in (2, 3)
+        assert message in " ".join(refused.stderr.split())
+
+
+def test_a_drawing_with_several_cells_is_said_to_have_them(tmp_path: Path) -> None:
+    """Two squares with diagonals that cross, side by side."""
+    vertices = [[0, 0], [2, 0], [4, 0], [0, 2], [2, 2], [4, 2], [1, 1], [3, 1]]
+    faces = [[a, b, m] for a, b, m in ((0, 1, 6), (1, 4, 6), (4, 3, 6), (3, 0, 6))]
+    faces += [[a, b, m] for a, b, m in ((1, 2, 7), (2, 5, 7), (5, 4, 7), (4, 1, 7))]
+    file = tmp_path / "two.fold"
+    file.write_text(json.dumps({"vertices_coords": vertices, "faces_vertices": faces}))
+    both = run("count", file, "--direction", "1,3")
+    assert "it shows 2 times 1 cells: --cell 2,1 takes one" in both.stderr
+    assert "4 vertices in a cell and the translations (4, 0) and (0, 2)" in both.stderr
+    one = run("count", file, "--direction", "1,3", "--cell", "2,1")
+    assert "2 vertices in a cell and the translations (2, 0) and (0, 2)" in one.stderr
+    assert "it shows" not in one.stderr
+
+
+def test_when_the_time_is_over_the_count_is_undecided() -> None:
+    found = count_periodic("miura-cell", (3, 4), limit=0)
+    assert found.status is exactfold.Verdict.UNDECIDED
+    assert found.reason.endswith("undecided after 0 seconds")

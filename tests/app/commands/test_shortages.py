@@ -84,6 +84,7 @@ def test_no_shortage_of_memory_looks_like_a_verdict(files: Path, command: str, l
         assert len(done.stderr.splitlines()) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", LIMITS)
 def test_a_batch_that_is_short_of_memory_ends_and_goes_on(tmp_path: Path, limit: int) -> None:
     names, out = " ".join(map(str, written(tmp_path))), tmp_path / "o.jsonl"

@@ -93,7 +93,7 @@ def test_ctrl_c_ends_the_server():
 def test_what_is_written_is_counted_as_count_counts_it(tmp_path):
     """The motion with the letters of the file comes besides the ways that have numbers."""
     target = tmp_path / "bird-base.html"
-    result = run("view", "bird-base", "-o", target, "--frames", 2)
+    result = run("view", "bird-base", "-o", target, "--frames", 2, "--limit", 600)
     assert result.stdout.startswith("16 families of ways to fold")
     said = f"wrote {target}: 16 ways to fold, and the motion with the letters of the file\n"
     assert result.stdout.endswith(said)

@@ -275,6 +275,7 @@ def test_ports_and_frames_out_of_range_are_refused():
         view_server("two-vertex", frames=1)
 
 
+@pytest.mark.slow
 def test_who_leaves_ends_the_work_for_him():
     """A page that is closed does not keep a process busy."""
     with view_server("bird-base", limit=60) as found:

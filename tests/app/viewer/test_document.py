@@ -76,6 +76,7 @@ def test_frames_are_those_of_the_motion_and_of_its_mirror_image(two_vertex):
     assert (way["motion"]["proved"], way["why"]) == (False, "")
 
 
+@pytest.mark.slow
 def test_motions_are_proved_where_that_is_asked_for():
     [way] = view_document("two-vertex", branches=["+-"], frames=3, proving=True)["ways"]
     event = prove(follow(find_branch("two-vertex", "+-"))).contact.event
@@ -83,6 +84,7 @@ def test_motions_are_proved_where_that_is_asked_for():
     assert "between the times {:.8g} and {:.8g}".format(*event.time) in way["motion"]["said"]
 
 
+@pytest.mark.slow
 def test_vertices_to_look_at_are_marked_with_reasons():
     marks = document_of("zigzags")["sheet"]["marks"]
     assert [(mark["vertex"], mark["kind"]) for mark in marks] == [
@@ -330,6 +332,7 @@ def _script(page):
     return re.search(r'<script type="module">(.*?)</script>', page, re.DOTALL)[1]
 
 
+@pytest.mark.slow
 def test_ways_have_the_same_numbers_in_the_page_in_fold_and_in_count():
     corners = [(0, 0), (10, -3), (16, 5), (9, 14), (-2, 9)]
     sheet = delaunay([*corners, (5, 4), (8, 7)])

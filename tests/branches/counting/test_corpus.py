@@ -17,6 +17,7 @@ import pytest
 from certifiers import CERTIFIERS, Certifier
 from flint import fmpq, fmpq_mat
 from rivals.hermite import hermite_counts
+from sampling import slow_after
 from sheets import SQUARE, reflex_corners, scrambled, straight_side
 
 from exactfold import PROVED, UNDECIDED, CreasePattern, checker, random_square
@@ -167,12 +168,15 @@ def test_exact_engine_finds_all_zeros_real(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "method"),
-    [
-        (name, method)
-        for name in SOLVABLE
-        for method in ("newton", "popping", "homotopy")
-        if method != "homotopy" or CORPUS[name].Vi < 5
-    ],
+    slow_after(
+        12,
+        (
+            (name, method)
+            for name in SOLVABLE
+            for method in ("newton", "popping", "homotopy")
+            if method != "homotopy" or CORPUS[name].Vi < 5
+        ),
+    ),
 )
 def test_boxes_around_path_ends_hold_the_exact_simple_zeros(name: str, method: str) -> None:
     found = isolate(chart_of(name).system, candidates_of(name, method))

@@ -77,3 +77,14 @@ def test_a_coordinate_of_300_digits_is_counted(name, tmp_path):
     assert result.status is exactfold.PROVED
     assert (result.distinct, result.real) == (expected, expected)
     assert len(set(result.sign_vectors)) == expected // 2
+
+
+@pytest.mark.parametrize("exponent", [400, -400])
+def test_sheets_beyond_the_range_of_floats_are_counted(exponent):
+    small = random_square(2, seed=3)
+    scale = Fraction(10) ** exponent
+    points = [(x * scale, y * scale) for x, y in small.vertices]
+    found = exactfold.count(CreasePattern(points, small.triangles))
+    known = exactfold.count(small)
+    assert found.status is exactfold.PROVED
+    assert [b.assignment for b in found] == [b.assignment for b in known]

@@ -230,6 +230,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_workers_write_the_same_file_and_may_be_killed(tmp_path: Path) -> None:
     """In a process of its own, as workers are started anew."""
     script = tmp_path / "run.py"

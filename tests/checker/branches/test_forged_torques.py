@@ -75,7 +75,7 @@ def test_keys() -> None:
     refused(document, "evidence: expected an object with the keys count branch side rays")
 
 
-MARGIN = "the power on the ray does not exceed that on every rival so much"
+MARGIN = "the power on the ray does not exceed that on every rival by the margin"
 
 
 @pytest.mark.parametrize(

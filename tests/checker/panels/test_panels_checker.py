@@ -309,6 +309,7 @@ def test_a_mode_that_does_not_extend() -> None:
     verified(made)
 
 
+@pytest.mark.slow
 def test_a_mode_that_extends_is_not_refuted() -> None:
     made = certified("tiling")
     [support] = supports_of(made)

@@ -4,6 +4,7 @@ import random
 
 import pytest
 from panel_letters import HEXAGON, around, crane_base, random_directions, random_letters
+from sampling import slow_after
 
 from exactfold._support.verdict import PROVED, REFUTED
 from exactfold.checker import check
@@ -26,7 +27,7 @@ HARD = [
 """Letterings that fold and that the search from one point misses."""
 
 
-@pytest.mark.parametrize(("directions", "letters"), HARD)
+@pytest.mark.parametrize(("directions", "letters"), slow_after(3, HARD))
 def test_letters_that_need_several_starts_are_found(directions, letters):
     sheet = around(directions)
     program = FirstOrderProgram(stars(sheet), dict(zip(sheet.folds, letters, strict=True)))

@@ -256,6 +256,7 @@ def test_a_forged_file_is_invalid_on_the_command_line(kept, tmp_path):
     assert result.stdout.startswith("INVALID: claim loops = 1, but it is 0")
 
 
+@pytest.mark.slow
 def test_what_an_interrupted_run_leaves_is_unfinished(tmp_path, capsys):
     """Never valid, and invalid only with a loop that does not hold."""
     file = tmp_path / "loops.txt"

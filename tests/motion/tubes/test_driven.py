@@ -10,6 +10,7 @@ import flint
 import mpmath
 import numpy as np
 import pytest
+from sampling import slow_after
 from sixty_digits import driven_newton, holds
 
 from exactfold import CreasePattern, delaunay
@@ -279,7 +280,7 @@ def test_tubes_hold_what_sixty_digits_give() -> None:
         assert not holds(tube.enclosure(tube.longest // 3), x)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", slow_after(1, range(3)))
 def test_at_one_vertex_the_solutions_are_those_of_a_quadratic_equation(seed: int) -> None:
     """Given angles leave a line of heights, up to planes, which meets the cone of the vertex."""
     random = np.random.default_rng(seed)

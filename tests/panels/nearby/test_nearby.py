@@ -8,6 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
+from sampling import slow_after
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
@@ -64,7 +65,7 @@ def letters_of(sheet: PanelPattern, rng: Random) -> dict[tuple[int, int], str]:
     return {fold: rng.choice("MMVVUF") for fold in sheet.folds}
 
 
-@pytest.mark.parametrize("within", ["0.0001", "0.01", "0.04"])
+@pytest.mark.parametrize("within", slow_after(1, ["0.01", "0.0001", "0.04"]))
 @pytest.mark.parametrize("name", NAMES)
 def test_sheets_in_the_box_have_what_is_proved_of_them(name: str, within: str) -> None:
     rng = Random(name + within)
@@ -105,6 +106,7 @@ def test_sheets_in_the_box_have_what_is_proved_of_them(name: str, within: str) -
     assert seen
 
 
+@pytest.mark.slow
 def test_a_large_sheet_has_bounds_too() -> None:
     side = 16
     points = [(x, y) for y in range(side + 1) for x in range(side + 1)]
@@ -195,6 +197,7 @@ def test_wrong_letters_are_refuted_for_every_sheet_near_the_drawing() -> None:
     assert document["drawn"]["within"] == 0.009
 
 
+@pytest.mark.slow
 def test_letters_that_fit_are_not_proved_for_the_whole_sheet() -> None:
     found = counted(doubted("bird-base", 1e-4))
     assert found.drawn is not None

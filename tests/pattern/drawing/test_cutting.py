@@ -140,25 +140,69 @@ SPOKES = [(0, 0, 1, 1, "M"), (4, 0, 3, 1, "V"), (4, 4, 3, 3, "M"), (0, 4, 1, 3, 
 
 
 @pytest.mark.parametrize("letter", ["B", "C"])
-def test_a_hole_between_panels_is_refused_by_name(letter):
-    message = r"the sheet has a hole, near \(2, -2\) with 4 corners: sheets with holes are not"
-    with pytest.raises(NotADiskError, match=message):
-        opened(*square(0, 0, 4), *square(1, 1, 2, letter), *SPOKES)
+def test_a_hole_between_panels_is_read(letter):
+    found = opened(*square(0, 0, 4), *square(1, 1, 2, letter), *SPOKES)
+    assert shape(found.sheet) == (0, 4, 4)
+    [hole] = found.sheet.holes
+    corners = {tuple(map(int, found.sheet.vertices[v])) for v in hole}
+    assert corners == {(1, -1), (3, -1), (3, -3), (1, -3)}
+    assert "the sheet has 1 hole" in found.lines
+    assert dict(decompose(found.sheet).true) == {1: 2}
 
 
-def test_several_holes_are_named():
+def test_several_holes_are_read():
     lines = [*square(0, 0, 4), *square(1, 1, 2), *SPOKES]
     beside = [(a + 4, b, c + 4, d, letter) for a, b, c, d, letter in lines]
-    with pytest.raises(NotADiskError, match=r"has 2 holes, near \(2, -2\) with 4 corners, near"):
-        opened(*lines[:1], *lines[2:], (4, 0, 4, 4, "M"), *beside[:3], *beside[4:])
+    two = opened(*lines[:1], *lines[2:], (4, 0, 4, 4, "M"), *beside[:3], *beside[4:])
+    assert len(two.sheet.holes) == 2
+    assert shape(two.sheet) == (0, 9, 8)
 
 
 def test_a_slit_that_begins_inside_is_a_hole():
+    """It gets a point on each side of its middle, and the creases at its ends go on as before."""
     lines = [*square(0, 0, 4), (1, 2, 3, 2, "C"), (1, 0, 1, 4, "M"), (3, 0, 3, 4, "M")]
-    with pytest.raises(NotADiskError, match=r"a hole, near \(2, -2\) with 2 corners.* nor are"):
-        opened(*lines)
+    found = opened(*lines)
+    assert shape(found.sheet) == (0, 4, 4)
+    [hole] = found.sheet.holes
+    assert len(hole) == 4
+    places = {found.sheet.vertices[v] for v in hole}
+    assert {(1, -2), (3, -2)} < places
+    assert all(abs(y + 2) < 0.01 for _, y in places)
     flat = opened(*square(0, 0, 4), (1.5, 2, 2.5, 2, "C"), (1, 0, 1, 4, "M"))
     assert shape(flat.sheet) == (0, 1, 2)  # within one panel it changes nothing
+    assert flat.sheet.holes == ()
+
+
+def test_a_popup_of_two_slits_has_two_ways():
+    """All folds are parallel: the middle crease alone, and the strip that pops up."""
+    lines = [*square(0, 0, 6), (3, 0, 3, 2, "V"), (3, 4, 3, 6, "V"), (2, 2, 4, 2, "C")]
+    lines += [(2, 4, 4, 4, "C"), (2, 2, 2, 4, "M"), (3, 2, 3, 4, "V"), (4, 2, 4, 4, "M")]
+    result = decompose(opened(*lines).sheet)
+    assert (dict(result.second_order), dict(result.true)) == ({1: 2}, {1: 2})
+
+
+STRIP = [(3, 3, 7, 3, "C"), (3, 7, 7, 7, "C"), (3, 3, 3, 7, "M"), (7, 3, 7, 7, "M")]
+"""A strip between two slits in the middle of a panel."""
+
+
+@pytest.mark.parametrize(
+    ("across", "folds"),
+    [([(5, 3, 5, 7, "V")], 3), ([(4, 3, 4, 7, "V"), (6, 3, 6, 7, "V")], 4)],
+    ids=["three", "four"],
+)
+def test_a_panel_all_round_creases_is_cut_open(across, folds):
+    """The strip is clamped at both ends: to second order its parallel folds are locked."""
+    found = opened(*square(0, 0, 10), *STRIP, *across, (1, 0, 1, 10, "V"))
+    assert any(line.startswith("1 slit through panels that go all round") for line in found.lines)
+    assert shape(found.sheet) == (0, folds + 1, folds + 1)
+    assert len(found.sheet.holes) == 1
+    assert dict(decompose(found.sheet).true) == {1: 1}
+
+
+def test_creases_without_cuts_inside_a_panel_are_refused():
+    box = [(*line[:4], "M") for line in square(3, 3, 2)]
+    with pytest.raises(DisconnectedError, match="lie inside a panel, and no line joins them"):
+        opened(*square(0, 0, 10), *box, (1, 0, 1, 10, "V"))
 
 
 def test_a_hole_that_a_slit_joins_to_the_edge_is_none():

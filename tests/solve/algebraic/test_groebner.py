@@ -165,6 +165,7 @@ class TestKnownSystems:
         assert solution.classes[0].separating not in [(1, 0), (0, 1), (1, 1)]
 
 
+@pytest.mark.slow
 def test_symmetric_pattern_with_multiplicities():
     solution = groebner(chart_system(concentric_squares()))
     assert solution.dimension == 32
@@ -223,6 +224,7 @@ def test_linear_form_that_vanishes_on_one_class_only():
     assert sorted(c.vanishes([0, 1, 0]) for c in solution.classes) == [False, True]
 
 
+@pytest.mark.slow
 def test_candidates_are_near_the_zeros():
     system = chart_system(concentric_squares())
     candidates = groebner(system).candidates

@@ -62,6 +62,7 @@ def test_lifting_agrees_with_the_groebner_basis(system):
     assert groebner(system, engine="lifting").classes == groebner(system, engine="flint").classes
 
 
+@pytest.mark.slow
 def test_roots_and_lifting_agree_for_five_unknowns():
     solution = groebner(chart_system(FIVE_VERTICES))
     assert solution.engine == "roots"

@@ -17,11 +17,13 @@ from exactfold.rigidity.equations.gauge import Gauge
 from exactfold.rigidity.equations.problem import Problem
 from exactfold.rigidity.equations.sheet import VertexEquations
 from exactfold.rigidity.functionals import fold_functional, vertex_sign_functional
+from exactfold.solve.certify import enclosure
 from exactfold.solve.certify.enclosure import (
     Enclosure,
     curvatures,
     enclose,
     height_radius,
+    nappes,
     root_above,
     round_up,
 )
@@ -51,6 +53,21 @@ def fractions(found: Heights) -> dict[int, Fraction]:
     return {v: Fraction(int(h), found.denominator) for v, h in enumerate(found.values)}
 
 
+@pytest.mark.parametrize("height", [1, 10**12, 10**400])
+def test_nappes_in_floats_are_the_exact_ones(height: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    sheet = VertexEquations(Problem.of(random_square(30, seed=3)))
+    source = random.Random(7)
+    heights = np.array([source.randint(-height, height) for _ in sheet.pattern.vertices])
+    flat = sheet.unknowns[4]
+    for v in (flat, *sheet.pattern.star(flat)):
+        heights[v] = 0
+    bends = sheet.folds.bends(heights.astype(object))
+    found = nappes(sheet, bends)
+    assert found[flat] == 0
+    monkeypatch.setattr(enclosure, "_CLEAR", np.inf)
+    assert nappes(sheet, bends) == found
+
+
 @pytest.mark.parametrize("name", SHEETS)
 def test_folds_give_the_curvature_forms(name: str) -> None:
     sheet = VertexEquations(Problem.of(SHEETS[name]))
@@ -62,7 +79,7 @@ def test_folds_give_the_curvature_forms(name: str) -> None:
     for e, fold in enumerate(pattern.folds):
         weights = fold_functional(pattern, fold)
         assert bends[e] == sum(w * values[v] for v, w in weights.items())
-    found = curvatures(sheet, heights, 40)
+    found = curvatures(sheet.folds, heights, 40)
     degrees = pattern.degrees
     for v in pattern.interior:
         unit = 2 << 40  # of integer lengths

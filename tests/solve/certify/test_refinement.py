@@ -9,6 +9,8 @@ import pytest
 from exactfold._support.verdict import PROVED
 from exactfold.branches.counting.find import BranchFinder, find_branch
 from exactfold.pattern.triangulating.random_squares import random_square, sample_random_square
+from exactfold.solve.certify import refinement
+from exactfold.solve.certify.enclosure import curvatures
 from exactfold.solve.certify.refinement import exact, refine
 from exactfold.solve.numeric.sparse_newton import solve
 from exactfold.solve.numeric.sparse_sheet import FloatSheet
@@ -37,18 +39,48 @@ def test_steps_that_run_away_are_given_up_and_taken_with_pivots(finder, monkeypa
     signs = np.array([1.0, -1.0] * 6)
     start = exact(sheet, floats, solve(floats, signs).x)
     expected = refine(sheet, floats, signs, start, 160)
-    asked, plain = [], FloatSheet.solve
+    asked, plain = [], FloatSheet.solver
 
     def inexact(self, *arguments, pivots=False):
         asked.append(pivots)
-        found = plain(self, *arguments)
-        return found if pivots else found + 1.0
+        factored = plain(self, *arguments)
+        return lambda right: factored(right) + (0.0 if pivots else 1.0)
 
-    monkeypatch.setattr(FloatSheet, "solve", inexact)
+    monkeypatch.setattr(FloatSheet, "solver", inexact)
     found = refine(sheet, floats, signs, start, 160)
     assert found.values.tolist() == expected.values.tolist()
     assert asked[0] is False
     assert asked.count(False) < 5
+
+
+def test_patches_lead_to_the_same_heights(monkeypatch) -> None:
+    finder = BranchFinder(sample_random_square(150, 4, redraw=True).pattern)
+    sheet, floats = finder.sheet, replace(finder._floats, dense=0)
+    signs = np.array([random.Random(2).choice((1.0, -1.0)) for _ in range(floats.n)])
+    start = exact(sheet, floats, solve(floats, signs).x)
+    expected = refine(sheet, floats, signs, start, 160)
+    mended = []
+    take = refinement._mended
+
+    def counted(*given) -> bool:
+        mended.append(take(*given))
+        return mended[-1]
+
+    monkeypatch.setattr(refinement, "MANY", 10)
+    monkeypatch.setattr(refinement, "FEW", 0.0)
+    monkeypatch.setattr(
+        refinement,
+        "patches",
+        lambda floats, sizes: np.flatnonzero(floats.near(sizes == sizes.max(), 2)),
+    )
+    monkeypatch.setattr(refinement, "_mended", counted)
+    found = refine(sheet, floats, signs, start, 160)
+    assert True in mended
+    curvature = curvatures(sheet.folds, found.values, found.bits)
+    for name in ("bends", "low", "high"):
+        assert (getattr(curvature, name) == getattr(found.curvature, name)).all()
+    differences = found.values * expected.denominator - expected.values * found.denominator
+    assert abs(differences).max() < found.denominator * expected.denominator >> 60
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from sampling import slow_after
 
 from exactfold.errors import UsageError
 from exactfold.pattern.families import flat_vertex_square
@@ -39,7 +40,7 @@ def smallest_gap(points: np.ndarray) -> float:
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 7])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", slow_after(1, range(3)))
 def test_generic_systems_have_two_to_the_n_distinct_zeros(n: int, seed: int) -> None:
     system = random_system(n, seed)
     found = homotopy(system)
@@ -52,6 +53,7 @@ def test_generic_systems_have_two_to_the_n_distinct_zeros(n: int, seed: int) -> 
     assert (conjugate.min(axis=1) < 1e-8 * (1 + np.abs(found.points).max(axis=1))).all()
 
 
+@pytest.mark.slow
 def test_eight_interior_vertices() -> None:
     system = BranchSystem(random_square(8, seed=3)).chart.system
     found = homotopy(system)

@@ -26,7 +26,7 @@ def test_smoothed_and_plain_steps_end_at_the_same_zero(monkeypatch) -> None:
     sheet = BranchFinder(pattern)._floats
     signs = np.where(np.arange(sheet.n) % 3 == 0, 1.0, -1.0)
     smoothed = solve(sheet, signs)
-    monkeypatch.setattr(sparse_newton, "_MANY", sheet.n)
+    monkeypatch.setattr(sparse_newton, "MANY", sheet.n)
     plain = solve(sheet, signs)
     assert (smoothed.failure, plain.failure) == ("", "")
     assert not np.array_equal(smoothed.x, plain.x)  # they came along different ways
@@ -34,7 +34,7 @@ def test_smoothed_and_plain_steps_end_at_the_same_zero(monkeypatch) -> None:
 
 
 def test_plain_steps_follow_where_smoothed_ones_fail(monkeypatch) -> None:
-    monkeypatch.setattr(sparse_newton, "_MANY", 0)
+    monkeypatch.setattr(sparse_newton, "MANY", 0)
     pattern = random_square(6, seed=3)
     points = [(x * 10**140 + y, y) for x, y in pattern.vertices]
     long = BranchFinder(CreasePattern(points, pattern.triangles))

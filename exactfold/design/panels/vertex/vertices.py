@@ -202,6 +202,8 @@ class Vertices:
         """The answer in words, without its status."""
         count = len(self.facts)
         if not count:
+            if self.pattern.holes:
+                return "the sheet has no interior vertex"
             return "the sheet has no interior vertex, so that every fold can move by itself"
         if {"M", "V"}.isdisjoint(self.letters.values()):
             return self._without_letters()
@@ -231,6 +233,11 @@ class Vertices:
     def notes(self) -> tuple[str, ...]:
         """What follows for the sheet, what is asked for, and what is known of folding flat."""
         notes = []
+        if self.pattern.holes:
+            notes.append(
+                "whether the panels round a hole fit together is not looked at here: see "
+                "`exactfold count`"
+            )
         if self.refuted:
             notes.append(
                 "so the sheet as a whole cannot start to fold with these letters if its panels are "

@@ -170,6 +170,7 @@ def _drawing(frame: Mapping[str, Any], source: str, *, unfold: bool = False) -> 
     remarks += notes
     lines = [Line(i, j, letter) for (i, j), letter in zip(edges, letters, strict=True)]
     remarks += _repeated(lines)
+    lines = _bounding(lines, faces)
     missing = _missing(lines, faces)
     if missing and lines:
         remarks.append(f"added {counted(len(missing), 'line')} for sides of faces without an edge")
@@ -330,6 +331,21 @@ def _repeated(lines: Sequence[Line]) -> list[str]:
     if len(differing) > _SHOWN:
         remarks.append(f"and {len(differing) - _SHOWN} more repeated edges with different letters")
     return remarks
+
+
+def _bounding(lines: Sequence[Line], faces: Sequence[tuple[int, ...]]) -> list[Line]:
+    """The lines; those without a direction that are the side of one face bound the sheet: B.
+
+    So they do not lie between two panels, and the holes are what the faces do not cover.
+    """
+    number: Counter[frozenset[int]] = Counter()
+    for face in faces:
+        number.update(map(frozenset, zip(face, [*face[1:], *face[:1]], strict=True)))
+    return [
+        Line(i, j, "B") if letter in tuple("UFJ") and number[frozenset((i, j))] == 1 else line
+        for line in lines
+        for i, j, letter in [line]
+    ]
 
 
 def _missing(lines: Sequence[Line], faces: Sequence[tuple[int, ...]]) -> list[Line]:

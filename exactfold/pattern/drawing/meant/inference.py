@@ -125,7 +125,8 @@ def infer(
             if not accepted.has(relation):
                 accepted.add([relation])
         if accepted.contradicting:
-            raise UsageError(_conflict(accepted, accepted.contradicting[0]))
+            conflict = _conflict(accepted, accepted.contradicting[0])
+            raise UsageError(f"{conflict}: leave it out, or leave one of these out (--without)")
     if accepted.contradicting:
         wrong = accepted.contradicting[0]
         remedy = f"--without {wrong.name} leaves it out"

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import repeat
 from math import exp, inf, lcm, log, pi
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
+from exactfold.pattern.remembered import remembered
 
 if TYPE_CHECKING:
     from exactfold._support.arrays import FloatArray, IndexArray
@@ -22,6 +22,8 @@ NEAREST: Final = 3e-3
 """No relation whose defect is larger is near."""
 _CHANCE: Final = 1e-3
 """Relations are near if random angles have so many as near with a lower probability."""
+_ROUGH: Final = 1e-6
+"""Logarithms of chances from arrays are good to this."""
 _STEPS: Final = 30
 """Points on a grid of so many steps across the sheet are not rounded; no relation there misses by
 less than 1e-3."""
@@ -46,6 +48,7 @@ class Sheet(Protocol):
         """The edges round the sheet."""
 
 
+@remembered
 def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     """The relations that the sheet nearly has but does not have exactly, the nearest first.
 
@@ -67,7 +70,7 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
         return ()
     import numpy as np  # here, as sheets on a grid do without
 
-    places = np.array(_places(sheet.vertices))
+    places = np.array(_places(sheet))
     size = float(np.ptp(places, axis=0).max())
     tests = [test for test in _tests(sheet, places) if len(test.hubs)]
     if not all(test.shortest.all() for test in tests):
@@ -75,31 +78,59 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     # So many are expected below a defect of 1.
     trusted = inf if hasattr(sheet, "directions") else _TRUST
     expected = sum(float((2 * size / (pi * test.shortest)).sum()) for test in tests)
-    near: list[tuple[float, int, int, int]] = []
     # Integers, where the sheet has them: a common factor does not turn the vectors.
     points: Sequence[tuple[Number, Number]]
     points, *_ = getattr(sheet, "integer_vertices", (sheet.vertices,))
     directions: Mapping[Edge, tuple[Number, Number]] = getattr(sheet, "directions", {})
+    rows = []  # for each test: the defects of its near relations, their places, its number, rows
     for k, test in enumerate(tests):
         defects = test.off * test.shortest / size
         chosen = np.flatnonzero(defects < NEAREST)
         for row in chosen[test.off[chosen] < trusted].tolist():
             defects[row] = _exact(points, directions, test.terms(row)) * test.shortest[row] / size
         chosen = chosen[defects[chosen] > 0]
-        places_in_order = test.order[chosen].tolist()
-        near += zip(defects[chosen].tolist(), places_in_order, repeat(k), chosen.tolist())
-    near.sort()
-    # Two relations at a vertex may follow from each other, so k relations are k / 2 events.
-    chances = (_chance(expected * one[0], (k + 2) // 2) for k, one in enumerate(near))
-    believed = [k for k, chance in enumerate(chances, 1) if chance < _CHANCE]
-    return tuple(
-        tests[k].relation(row, defect) for defect, _, k, row in near[: max(believed, default=0)]
-    )
+        rows.append((defects[chosen], test.order[chosen], np.full(len(chosen), k), chosen))
+    if not rows:
+        return ()
+    found, order, number, row_in_test = (np.concatenate(part) for part in zip(*rows, strict=True))
+    believed = _believed(np.sort(found), expected)
+    if not believed:
+        return ()
+    first = np.flatnonzero(found <= np.partition(found, believed - 1)[believed - 1])
+    nearest = first[np.lexsort((order[first], found[first]))][:believed]
+    near = zip(number[nearest], row_in_test[nearest], found[nearest], strict=True)
+    return tuple(tests[k].relation(int(row), float(defect)) for k, row, defect in near)
 
 
-def _places(vertices: Sequence[tuple[Number, Number]]) -> list[tuple[float, float]]:
+def _believed(defects: FloatArray, expected: float) -> int:
+    """The largest k for which chance hardly brings k / 2 relations as near as the k-th defect.
+
+    The defects are in ascending order. Two relations at a vertex may follow from each other, so k
+    relations are k / 2 events. Arrays propose where to look, from the last k down.
+    """
+    import numpy as np
+
+    means = expected * defects
+    numbers = (np.arange(len(means)) + 2) // 2
+    above = numbers > means
+    with np.errstate(divide="ignore", invalid="ignore"):
+        powers = numbers - means + numbers * np.log(means / numbers)
+    may = (means == 0) | (above & (powers < log(_CHANCE) + _ROUGH))
+    for k in np.flatnonzero(may)[::-1].tolist():
+        if chance(float(means[k]), k // 2 + 1) < _CHANCE:
+            return int(k) + 1
+    return 0
+
+
+def _places(sheet: Sheet) -> FloatArray | list[tuple[float, float]]:
     """The points as floats; points beyond floats are moved and scaled to the size 1 first."""
+    import numpy as np
+
+    vertices = sheet.vertices
     try:
+        if hasattr(sheet, "integer_vertices"):  # the same floats, as one division of integers
+            points, common = sheet.integer_vertices
+            return np.array(np.array(points, dtype=object) / common, dtype=np.float64)
         return [(float(x), float(y)) for x, y in vertices]
     except OverflowError:
         xs, ys = zip(*vertices, strict=True)
@@ -108,7 +139,7 @@ def _places(vertices: Sequence[tuple[Number, Number]]) -> list[tuple[float, floa
         return [(float((x - left) / size), float((y - low) / size)) for x, y in vertices]
 
 
-def _chance(mean: float, number: int) -> float:
+def chance(mean: float, number: int) -> float:
     """An upper bound (Chernoff's) of the probability of `number` or more events, if so many are
     expected as `mean` says.
     """
@@ -188,6 +219,8 @@ class _Tests:
 
 
 def _is_on_a_grid(sheet: Sheet) -> bool:
+    if len(sheet.vertices) > (_STEPS + 1) ** 2:
+        return False  # different points on a grid are not more
     common, columns = 1, ([x for x, _ in sheet.vertices], [y for _, y in sheet.vertices])
     for value in (c for column in columns for c in column):
         common = lcm(common, getattr(value, "denominator", 0))
@@ -200,31 +233,38 @@ def _tests(sheet: Sheet, places: FloatArray) -> Iterator[_Tests]:
     """Every relation that is looked for: straight borders, straight paths, and Kawasaki's sums."""
     import numpy as np
 
-    boundary = set(sheet.boundary_edges)
+    edges = np.array(sheet.edges, dtype=np.intp).reshape(-1, 2)
+    rim = set(sheet.boundary_edges)
+    on_rim = np.array([edge in rim for edge in sheet.edges], dtype=bool)
     border: dict[int, list[int]] = {}
-    around: dict[int, list[int]] = {}
-    for edge in sheet.edges:
-        for v, w in (edge, edge[::-1]):
-            (border if edge in boundary else around).setdefault(v, []).append(w)
+    for v, w in edges[on_rim].tolist():
+        border.setdefault(v, []).append(w)
+        border.setdefault(w, []).append(v)
     straight = [v for v, near in border.items() if len(near) == 2]
     ends = np.array([sorted(border[v]) for v in straight], dtype=np.intp).reshape(-1, 2)
     count = len(straight)
     yield _Tests.of("border", places, np.array(straight, dtype=np.intp), ends, np.arange(count))
-    of_degree: dict[int, list[tuple[int, int]]] = {}
-    for v, near in around.items():
-        if v in border:
-            continue  # nothing has to close at a vertex of the boundary
-        of_degree.setdefault(len(near), []).append((v, count))
-        count += len(near) * (len(near) - 1) // 2 + 1
-    for degree, found in of_degree.items():
-        hubs, first = np.array(found, dtype=np.intp).T
-        ends = np.array([sorted(around[v]) for v in hubs.tolist()], dtype=np.intp)
+    # Nothing has to close at a vertex of the boundary.
+    inner = edges[~on_rim]
+    at, far = inner.ravel(), inner[:, ::-1].ravel()
+    off_rim = ~np.isin(at, np.array([*border], dtype=np.intp))
+    at, far = at[off_rim], far[off_rim]
+    by_end = np.lexsort((far, at))
+    hubs, seen, degrees = np.unique(at, return_index=True, return_counts=True)
+    starts = np.cumsum(degrees) - degrees
+    in_turn = np.argsort(seen)  # vertices come in the order in which edges have them first
+    relations = (degrees * (degrees - 1) // 2 + 1)[in_turn]
+    first = np.empty(len(hubs), dtype=np.intp)
+    first[in_turn] = count + np.cumsum(relations) - relations
+    for degree in dict.fromkeys(degrees[in_turn].tolist()):
+        chosen = in_turn[degrees[in_turn] == degree]
+        ends = far[by_end][starts[chosen, None] + np.arange(degree)]
         i, j = np.triu_indices(degree, 1)
         pairs = np.stack([ends[:, i], ends[:, j]], axis=-1).reshape(-1, 2)
-        order = (first[:, None] + np.arange(len(i))).ravel()
-        yield _Tests.of("straight", places, np.repeat(hubs, len(i)), pairs, order)
+        order = (first[chosen, None] + np.arange(len(i))).ravel()
+        yield _Tests.of("straight", places, np.repeat(hubs[chosen], len(i)), pairs, order)
         if degree >= 4 and degree % 2 == 0:
-            yield _Tests.of("kawasaki", places, hubs, ends, first + len(i))
+            yield _Tests.of("kawasaki", places, hubs[chosen], ends, first[chosen] + len(i))
 
 
 def _exact(

@@ -75,6 +75,7 @@ def test_some_folds_do_not_close() -> None:
         stopped(document, "the folds that close are not those that move")
 
 
+@pytest.mark.slow
 def test_modes_that_are_not_linear_close_one_by_one() -> None:
     stopped(closing(given("bent"), _EARLY >> 2), "the folds are not proved to close together")
 

@@ -1,0 +1,78 @@
+"""`exactfold design`: moves vertices until a sheet folds as it is wanted to, with proof."""
+
+from __future__ import annotations
+
+import json
+
+from exactfold._support.clock import Clock
+from exactfold.app.options.choosing import choice_of, indices
+from exactfold.app.options.tolerances import DesignOptions
+from exactfold.app.shell.patterns import read
+from exactfold.app.shell.shell import EXIT, Bar, name_of, sheet_written, wrote
+from exactfold.app.verbs.choosing import the_branch
+from exactfold.app.verbs.chosen import asked_letters
+from exactfold.branches.counting.find import find_branch
+from exactfold.branches.values.branch import Branch
+from exactfold.design.moving.order import designed
+from exactfold.design.moving.result import Designed
+from exactfold.design.refutations.asked import by_fold
+from exactfold.pattern.opening import Opened
+from exactfold.pattern.writing.fold_writing import checked_target, write_fold
+
+
+class Asked(DesignOptions):
+    """The options of one call, and how they are answered."""
+
+    def answer(self) -> int:
+        """Move the vertices, write and print the new sheet, and return the exit code.
+
+        A sheet that was found is written, also if it is only the closest one, and after Ctrl-C.
+        Raises the errors of `read`, `the_branch`, `designed` and `write_fold`.
+        """
+        if self.output is not None:
+            checked_target(self.output, (".fold",), "a sheet")  # before the work
+        fixed = [] if self.fixed is None else indices("--fixed", self.fixed)
+        with Bar("reading") as bar:
+            sheet = read(self.file, self.reading, "design", verbose=self.verbose)
+            letters = self._letters(sheet.opened)
+            found = designed(
+                sheet.pattern,
+                letters,
+                branch=None if letters is not None else self._branch(sheet.opened, bar),
+                maximise=self.maximise,
+                within=self.within,
+                fixed=fixed,
+                clock=Clock(self.limit),
+                progress=bar,
+            )
+            if self.output is not None:
+                write_fold(found.pattern, self.output, _drawn(found))
+        if self.as_json:
+            output = None if self.output is None else str(self.output)
+            print(json.dumps(found.to_dict(name_of(self.file), output)))
+        else:
+            from exactfold.app import report
+
+            report.show(report.design_report(found))
+            if self.output is not None:
+                wrote(self.output, sheet_written(found.pattern))
+        return EXIT[found.status]
+
+    def _letters(self, opened: Opened) -> dict[tuple[int, int], str] | None:
+        if self.letters is None:
+            return None
+        asked = choice_of(self, opened).letters
+        return by_fold(opened.sheet.folds, asked_letters(opened, asked))
+
+    def _branch(self, opened: Opened, bar: Bar) -> Branch | None:
+        if not self.is_named:
+            return None
+        # Both sides of a branch have the same tolerance, and the same largest margin.
+        return the_branch(opened, choice_of(self, opened), bar, needs="design").branch
+
+
+def _drawn(found: Designed) -> dict[tuple[int, int], str] | None:
+    """The letters in the new file: those asked for, or those of the branch."""
+    if found.letters:
+        return dict(found.letters)
+    return dict(find_branch(found.pattern, found.signs).assignment) if found.signs else None

@@ -1,0 +1,1 @@
+"""Moving the vertices of a sheet so that it folds as it is wanted to."""

@@ -1,0 +1,1 @@
+"""How far the vertices of a sheet may move before its ways to fold, or their letters, change."""

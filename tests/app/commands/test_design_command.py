@@ -1,0 +1,72 @@
+"""`exactfold design`: what it prints and writes, its exit codes, and what it refuses."""
+
+import json
+
+import pytest
+from jsonschema import Draft202012Validator
+from running import INVALID, PROVED, UNDECIDED, USAGE, run
+from shown import near_miss
+
+import exactfold
+from exactfold.design import designed
+from exactfold.pattern import write_fold
+from exactfold.pattern.families import two_vertex
+
+
+def test_command_and_function_give_the_same(tmp_path):
+    path = tmp_path / "new.fold"
+    result = run("design", "two-vertex", "--maximise", "tolerance", "-o", path, "--json")
+    data = json.loads(result.stdout)
+    Draft202012Validator(exactfold.schema("design")).validate(data)
+    expected = designed(two_vertex(), maximise="tolerance")
+    assert result.exit_code == PROVED
+    assert (data["before"], data["after"]) == (expected.before, expected.after)
+    assert exactfold.read(path).sheet == expected.pattern
+    assert data["output"] == str(path)
+
+
+def test_what_is_shown(tmp_path):
+    path = tmp_path / "new.fold"
+    result = run("design", "two-vertex", "--way", 1, "--maximise", "margin", "-o", path)
+    lines = result.stdout.splitlines()
+    assert lines[0] == "status  PROVED (the margin of torques is proved to be larger than before)"
+    assert "branch  --" in lines
+    assert any(line.startswith("margin  from 0.800706 to ") for line in lines)
+    assert lines[-1].endswith("new.fold: 6 vertices, 7 folds, 6 panels")
+    assert exactfold.read(path).letters
+
+
+def test_letters_that_are_there_need_no_move():
+    result = run("design", "two-vertex", "--letters", "MVVVMVM")
+    assert result.exit_code == PROVED
+    assert "moved   by at most 0" in result.stdout
+
+
+def test_letters_that_are_refuted_or_not_reached(tmp_path):
+    result = run("design", "two-vertex", "--letters", "MMMMMMM")
+    assert result.exit_code == INVALID
+    assert "on no sheet with these" in result.stdout
+    pattern, letters = near_miss(4, 3)
+    other = "".join(letters[fold] for fold in sorted(letters))
+    write_fold(pattern, tmp_path / "p.fold")
+    result = run("design", tmp_path / "p.fold", "--letters", other, "--within", "1e-4", "--json")
+    data = json.loads(result.stdout)
+    assert result.exit_code == UNDECIDED
+    assert "keeps another letter" in data["reason"]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([], "--maximise"),
+        (["--maximise", "margin"], "about one way"),
+        (["--maximise", "beauty"], "neither tolerance nor margin"),
+        (["--maximise", "tolerance", "--within", "0"], "is not positive"),
+        (["--maximise", "tolerance", "--fixed", "a"], "--fixed takes vertex indices"),
+        (["--maximise", "tolerance", "-o", "new.svg"], "new.svg"),
+    ],
+)
+def test_what_is_refused(options, words):
+    result = run("design", "two-vertex", *options)
+    assert result.exit_code == USAGE
+    assert words in result.stderr
