@@ -50,6 +50,7 @@ def test_the_tree_holds_every_panel_once_and_every_other_fold_closes_loops(
     assert robot.root == int(np.argmax(robot.areas))
 
 
+@pytest.mark.slow
 def test_mujoco_has_the_sheet_of_every_frame(motion: SheetInMotion) -> None:
     mujoco = pytest.importorskip("mujoco")
     text = mjcf_text(motion.pattern, motion.angles, motion.times, "sheet")
@@ -102,6 +103,7 @@ def test_a_simulation_that_drives_one_fold_stays_on_the_way() -> None:
         assert data.joint(hinge.name).qpos[0] == pytest.approx(expected, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_robot_reader_has_the_sheet_of_every_frame(motion: SheetInMotion, tmp_path: Path) -> None:
     yourdfpy = pytest.importorskip("yourdfpy")
     written = write_motion(motion, tmp_path / "sheet.urdf")
@@ -127,6 +129,7 @@ def test_a_robot_reader_has_the_sheet_of_every_frame(motion: SheetInMotion, tmp_
                 assert np.allclose(at[hinge.parent, v], at[hinge.child, v], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_panel_that_is_not_convex_is_made_of_triangles() -> None:
     mujoco = pytest.importorskip("mujoco")
     points = [(0, 0), (4, 0), (4, 4), (2, 1), (0, 4), (2, 6)]
