@@ -13,6 +13,7 @@ from exactfold._support.plurals import agreeing, counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.letters import UPSIDE_DOWN
 from exactfold.errors import NotFollowedError, UsageError
+from exactfold.exact.joined_fields import joined
 from exactfold.motion.panels.followable import (
     PanelMode,
     line_mode,
@@ -182,15 +183,28 @@ def _spaces(result: Decomposition, modes: Sequence[PanelMode]) -> list[_Space]:
     moving = conditions(result.pattern, result.held)
     spaces = []
     for part in result.parts:
-        shown = {id(leaf): folds for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True)}
-        found = [(leaf, shown[id(leaf)]) for leaf in part.spaces]
-        found += [(one.leaf, one.folds) for one in part.found if one.leaf not in part.spaces]
+        found = [
+            (leaf, folds or any(one.folds and _same(one.leaf, leaf) for one in part.found))
+            for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True)
+        ]
+        if not found:  # where all components are known, those found at random are among them
+            found = [(one.leaf, one.folds) for one in part.found]
         for leaf, folds in found:
             is_line = leaf.size == 1 and not leaf.vertices and leaf.folds in lines
             is_mode = is_line and line_mode(result, leaf, moving).is_linear
             if leaf.dimension > 0 and not is_mode:
                 spaces.append(_Space(leaf, part, PROVED if folds else UNDECIDED))
     return spaces
+
+
+def _same(one: Leaf, other: Leaf) -> bool:
+    """Whether two leaves have the same rows, in whatever fields they are written."""
+    if (one.rows.keys(), one.size, one.vertices) != (other.rows.keys(), other.size, other.vertices):
+        return False
+    pairs = [
+        pair for fold in one.rows for pair in zip(one.rows[fold], other.rows[fold], strict=True)
+    ]
+    return one.motion == other.motion and all(a == b for a, b in joined(pairs))
 
 
 def is_too_many(result: Decomposition) -> bool:
