@@ -213,7 +213,10 @@ class Asked(CountOptions):
                 f"with {' and '.join(texts)}: a cell file says which is meant"
             )
         if self.cell is None and (most := repeated(opened.sheet)) != (1, 1):
-            say(f"it shows {most[0]} times {most[1]} cells: --cell {most[0]},{most[1]} takes one")
+            say(
+                f"it shows {most[0]} x {most[1]} equal cells: --cell {most[0]},{most[1]} takes one "
+                "of them"
+            )
         return cell
 
     def _streamed(self, file: Path) -> StreamedCount:

@@ -184,7 +184,7 @@ def _spaces(result: Decomposition, modes: Sequence[PanelMode]) -> list[_Space]:
     spaces = []
     for part in result.parts:
         found = [
-            (leaf, folds or any(one.folds and _same(one.leaf, leaf) for one in part.found))
+            (leaf, folds or _folds_as_found(leaf, part))
             for leaf, folds in zip(part.spaces, part.spaces_fold, strict=True)
         ]
         if not found:  # where all components are known, those found at random are among them
@@ -195,6 +195,15 @@ def _spaces(result: Decomposition, modes: Sequence[PanelMode]) -> list[_Space]:
             if leaf.dimension > 0 and not is_mode:
                 spaces.append(_Space(leaf, part, PROVED if folds else UNDECIDED))
     return spaces
+
+
+def _folds_as_found(leaf: Leaf, part: Part) -> bool:
+    """Whether a component with the rows of a leaf was found, and truly folds.
+
+    This says nothing of a leaf with several components, which stands in the list as often.
+    """
+    alone = sum(other is leaf for other in part.spaces) == 1
+    return alone and any(one.folds and _same(one.leaf, leaf) for one in part.found)
 
 
 def _same(one: Leaf, other: Leaf) -> bool:
