@@ -49,6 +49,10 @@ DOCUMENTS: Final = {
         "exactfold count CELL --direction X,Y --json",
         "branches.periodic.result:PeriodicDocument",
     ),
+    "directions": (
+        "exactfold count CELL --direction all --json",
+        "branches.periodic.directions_result:DirectionsDocument",
+    ),
     "branch": (
         "exactfold branch --json, and each line of it",
         "branches.values.branch:BranchDocument",

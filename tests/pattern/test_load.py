@@ -234,6 +234,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "design.BoundaryMatch",
         "branches.ShapeCount",
         "branches.PeriodicCount",
+        "branches.DirectionsCount",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",

@@ -19,7 +19,7 @@ from exactfold.app.shell.parameters import (
     Resume,
     cell_numbers,
     complete_method,
-    direction_vector,
+    direction_or_all,
     distance,
     flag,
     method_name,
@@ -89,13 +89,13 @@ class CountOptions(ReadingOptions):
         ),
     ] = None
     direction: Annotated[
-        tuple[Fraction, Fraction] | None,
+        tuple[Fraction, Fraction] | str | None,
         typer.Option(
-            parser=direction_vector,
-            metavar="X,Y",
+            parser=direction_or_all,
+            metavar="X,Y|all",
             help="For a periodic sheet: the vector at right angles to the axis of the cylinder on "
-            "which the sheet rolls up, as in 3,4. A drawing is taken for the cell of one if its "
-            "opposite sides match.",
+            "which the sheet rolls up, as in 3,4; or all of them together. A drawing is taken for "
+            "the cell of one if its opposite sides match.",
         ),
     ] = None
     cell: Annotated[

@@ -15,6 +15,7 @@ from exactfold.app.report.terminal import letters_text, listed, more_text, statu
 from exactfold.exact.numbers import format_rational
 
 if TYPE_CHECKING:
+    from exactfold.branches.periodic.directions_result import DirectionsCount
     from exactfold.branches.periodic.result import AlgebraicLine, HeightSpace, PeriodicCount
 
 
@@ -109,3 +110,71 @@ def _space(space: HeightSpace | AlgebraicLine) -> str:
         return "- dimension 1, with irrational heights; --json has them"
     rows = ["(" + ", ".join(map(format_rational, row)) + ")" for row in space.basis]
     return f"- dimension {space.dimension}: {', '.join(rows)}"
+
+
+def directions_report(result: DirectionsCount, *, everything: bool) -> Group:
+    """The answer for all directions, the branches, and where they cross."""
+    took = f" ({result.seconds:.2f} s): {result.reason}"
+    if result.status is not PROVED:
+        answer = Text.assemble(
+            "the branches over all directions are ", status_text(result.status), took
+        )
+    else:
+        number = counted(len(result.branches), "branch")
+        answer = Text.assemble(f"{number} over all directions - ", status_text(PROVED), took)
+    parts: list[Any] = [answer]
+    limit = listed(len(result.branches), everything=everything)
+    if limit:
+        parts += ["", _branches_table(result, limit), *more_text(len(result.branches) - limit)]
+        parts += ["", Text(_half_turn(result))] if result.status is PROVED else []
+    limit = listed(len(result.crossings), everything=everything)
+    if limit:
+        parts += ["", Text("Crossings", style="bold"), _crossings_table(result, limit)]
+        parts += more_text(len(result.crossings) - limit)
+    if result.branches:
+        parts += [
+            "",
+            Text(
+                "Directions are counter-clockwise from 1,0, which comes last. At a crossing the "
+                "vertices with sign 0 are flat, and on each branch through it they change their "
+                "signs. Signs and b are those of the side on which the first vertex pops up."
+            ),
+        ]
+    return Group(*parts)
+
+
+def _half_turn(result: DirectionsCount) -> str:
+    """What happens to the branches as the direction makes a half turn."""
+    turns = result.turns or 1
+    if turns == 1:
+        return "After a half turn of the direction every branch comes back as itself."
+    return (
+        f"After a half turn of the direction branches come back as others; after {turns} half "
+        "turns as themselves."
+    )
+
+
+def _branches_table(result: DirectionsCount, limit: int) -> Table:
+    table = Table(box=None, pad_edge=False)
+    order = result.permutation
+    for heading in ("branch", "signs", "b", *(["after a half turn"] if order else [])):
+        table.add_column(heading, no_wrap=True)
+    for k, branch in enumerate(result.branches[:limit]):
+        cells = [str(k + 1), branch.vertex_signs, "+" if branch.b > 0 else "-"]
+        table.add_row(*cells, *([str(order[k] + 1)] if order else []))
+    return table
+
+
+def _crossings_table(result: DirectionsCount, limit: int) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for heading in ("degrees", "direction", "signs", "b", "flat vertices"):
+        table.add_column(heading, no_wrap=True)
+    for crossing in result.crossings[:limit]:
+        table.add_row(
+            f"{crossing.angle:.3f}",
+            str(crossing.direction),
+            crossing.vertex_signs,
+            "+" if crossing.b > 0 else "-",
+            ", ".join(map(str, crossing.vertices)),
+        )
+    return table

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
-from running import PROVED, run
+from running import PROVED, UNDECIDED, run
 
 import exactfold
 from exactfold import schema
@@ -49,6 +49,42 @@ def test_the_answer_in_words(tmp_path: Path) -> None:
     twist = run("count", "square-twist-cell", "--direction", "1,2", "--certificate", tmp_path / "c")
     assert "irrational heights" in twist.stdout
     assert "no certificate was written" in twist.stderr
+
+
+def test_all_directions_in_json_and_words(tmp_path: Path) -> None:
+    result = run("count", "waterbomb-cell", "--direction", "all", "--json")
+    assert result.exit_code == PROVED
+    data = json.loads(result.stdout)
+    Draft202012Validator(schema("directions")).validate(data)
+    assert [branch["b"] for branch in data["branches"]] == [1, -1, -1, -1]
+    assert (data["permutation"], data["cycles"]) == ([1, 2, 4, 3], [[1], [2], [3, 4]])
+    (crossing,) = data["crossings"]
+    assert (crossing["direction"]["x"], crossing["direction"]["y"]) == (["0"], ["1"])
+    words = run("count", "waterbomb-cell", "--direction", "all").stdout
+    assert words.startswith("4 branches over all directions - PROVED")
+    assert "after 2 half" in words
+    undecided = run("count", "miura-cell", "--direction", "all")
+    assert undecided.exit_code == UNDECIDED
+    assert "3 spaces of pleats" in " ".join(undecided.stdout.split())
+    refused = run("count", "miura-cell", "--direction", "all", "--certificate", tmp_path / "c")
+    assert "--direction all has no certificate" in refused.stderr
+
+
+def test_a_picture_by_direction(tmp_path: Path) -> None:
+    file = tmp_path / "w.svg"
+    result = run("draw", "waterbomb-cell", "--direction", "all", "--most", "1", "-o", file)
+    assert result.exit_code == PROVED
+    text = file.read_text()
+    assert "1 crossing and 3 analytic sheets, proved" in text
+    assert text.count("<path") == 4 + 9
+    assert text.count('stroke-dasharray="3 3"') == 2
+    for arguments, message in (
+        ((), "give --direction all"),
+        (("--direction", "3,4"), "draw takes --direction all"),
+        (("--direction", "all", "--way", "1"), "--direction does not go with"),
+        (("--cell", "2,2"), "--cell goes with --direction all"),
+    ):
+        assert message in run("draw", "waterbomb-cell", *arguments).stderr
 
 
 @pytest.mark.parametrize(
