@@ -235,6 +235,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "branches.ShapeCount",
         "branches.PeriodicCount",
         "branches.DirectionsCount",
+        "panels.PanelCell",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",

@@ -50,10 +50,10 @@ class Asked(CountOptions):
         """
         apart(self.certificate, self.pattern, self.stream)
         apart(self._components, self.pattern, self.stream)
-        if self.direction is not None or is_cell_file(located(self.pattern)):
+        if self.direction is not None or self.periodic or is_cell_file(located(self.pattern)):
             return self._periodic()
         if self.cell is not None:
-            raise UsageError("--cell goes with --direction X,Y: count the ways of a periodic sheet")
+            raise UsageError("--cell goes with --direction or --periodic")
         if self.given:
             return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
@@ -158,11 +158,6 @@ class Asked(CountOptions):
         from exactfold.branches.periodic.certificate import periodic_certificate
         from exactfold.branches.periodic.counting import count_periodic
 
-        if self.direction is None:
-            raise UsageError(
-                f"{self.pattern} is the cell of a periodic sheet: give the direction in which it "
-                "rolls up, as in --direction 3,4, or --direction all"
-            )
         for option, value in (
             ("--stream", self.stream),
             ("--method", None if self.method == "auto" else self.method),
@@ -170,7 +165,11 @@ class Asked(CountOptions):
             ("--boundary-heights", self.boundary_heights),
         ):
             if value is not None:
-                raise UsageError(f"{option} does not go with --direction")
+                raise UsageError(f"{option} does not go with periodic sheets")
+        if self.direction is None:
+            return self._panel_cell()
+        if self.periodic:
+            raise UsageError("give --direction, or --periodic for rigid panels")
         if self.direction == ALL:
             return self._all_directions()
         with Bar("reading") as bar:
@@ -187,6 +186,22 @@ class Asked(CountOptions):
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:
             report.show(report.periodic_report(result, written, everything=self.everything))
+        return EXIT[result.status]
+
+    def _panel_cell(self) -> int:
+        """Count the motions of a tessellation of rigid panels."""
+        from exactfold.panels.periodic.modes import count_panel_cell
+
+        if self.certificate is not None:
+            raise UsageError("motions of a tessellation of rigid panels have no certificate")
+        with Bar("reading") as bar:
+            cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
+            bar("solving")
+            result = count_panel_cell(cell, limit=self.limit)
+        if self.as_json:
+            print(json.dumps(result.to_dict(name_of(self.pattern))))
+        else:
+            report.show(report.panel_cell_report(result, everything=self.everything))
         return EXIT[result.status]
 
     def _all_directions(self) -> int:

@@ -31,6 +31,8 @@ from exactfold.app.report.match import panel_match_report as panel_match_report
 from exactfold.app.report.motion import motion_report as motion_report
 from exactfold.app.report.panels import panels_report as panels_report
 from exactfold.app.report.periodic import directions_report as directions_report
+from exactfold.app.report.periodic import letters_report as letters_report
+from exactfold.app.report.periodic import panel_cell_report as panel_cell_report
 from exactfold.app.report.periodic import periodic_report as periodic_report
 from exactfold.app.report.study import row_report as row_report
 from exactfold.app.report.study import studies_report as studies_report
