@@ -62,8 +62,8 @@ class Closed(PanelClaim):
 
     @staticmethod
     def said(claims: Document) -> str:
-        """That no panels touch later on."""
-        return ", nor later, until all folds that move are closed"
+        """That no panels touch later on, if the file says so."""
+        return ", nor later, until all folds that move are closed" if "closed" in claims else ""
 
 
 class LastStretch:
