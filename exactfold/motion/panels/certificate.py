@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, cos, floor, pi, sin, tan
 
@@ -35,6 +35,7 @@ _SLACK = Fraction(1, 1 << 22)
 """The claim ends this much of the parameter early, because the checker has coarser separating
 planes.
 """
+_TRIES = 20
 _PLACES = 44
 """Times are rounded to this many binary places."""
 
@@ -211,18 +212,24 @@ def overlap_claim(
 ) -> Claim:
     """The claim that states the first contact of plates, with a point of both.
 
-    The point is looked for at the parameter of the file, which is a little later. Raises
-    `NotApplicableError` if none is found there.
+    The point is looked for at the parameter of the file, a little later than the contact. Raises
+    `NotApplicableError` if none is found soon.
     """
-    claim = contact_claim(event, clear, timing)
-    end = Fraction(claim.evidence["contact"], 1 << _PARAMETER_BITS)
-    found = ThickContacts(motion, solid).crossed(float(timing.clock.time(end)[1]))
-    if found is None:
-        raise NotApplicableError("no certificate: no point of both plates is found")
-    crossed, (_, point) = found
-    claim.claims["contact"]["faces"] = [list(face) for face in crossed.faces]
-    claim.claims["contact"]["folds"] = []
-    return Claim(claim.claims, {**claim.evidence, "point": [format_rational(c) for c in point]})
+    thick = ThickContacts(motion, solid)
+    for k in range(_TRIES):
+        later = (event.time[0], event.time[1] + (1 << k) * 2.0**-_PARAMETER_BITS)
+        claim = contact_claim(replace(event, time=later), clear, timing)
+        end = Fraction(claim.evidence["contact"], 1 << _PARAMETER_BITS)
+        found = thick.crossed(float(timing.clock.time(end)[1]))
+        if found is None:
+            continue
+        crossed, (_, point) = found
+        faces = {"faces": [list(face) for face in crossed.faces], "folds": []}
+        return Claim(
+            {"contact": {**claim.claims["contact"], **faces}},
+            {**claim.evidence, "point": [format_rational(c) for c in point]},
+        )
+    raise NotApplicableError("no certificate: no point of both plates is found")
 
 
 def stop_claim(motion: PanelMotion, event: Event, timing: Timing) -> Claim:

@@ -92,6 +92,9 @@ class ThickContacts:
     def _placing(self) -> Placing:
         return Placing(self.motion.pattern, self.motion.held)
 
+    def _places(self, times: FloatArray) -> FloatArray:
+        return self._placing.positions(self.motion.angles_at(times))[0]
+
     def phases(self) -> list[tuple[float, Open]]:
         """Until when which pairs have to be proved to stay apart: at first without the neighbours.
 
@@ -151,12 +154,11 @@ class ThickContacts:
 
         The point is given where it is in the flat sheet, as a point of the first plate.
         """
-        coords, _ = self._placing.positions(self.motion.angles_at(np.array([time])))
-        there = self.contacts.plates.places(coords)[0]
+        there = self.contacts.plates.places(self._places(np.array([time])))[0]
         rows = overlapping(there, self.contacts.plates.prisms, self.contacts.pairs)
         if not len(rows):
             return None
-        one, two = self.contacts.deepest(there, rows)
+        one, two = self.contacts.deepest(time, self._places, rows)
         point = self.shared(there, one, two)
         if point is None or not self.proves(time, point, two):
             return None

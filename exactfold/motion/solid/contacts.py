@@ -20,6 +20,9 @@ _CHUNK: Final = 16
 _CLOSE: Final = 1e-13
 """The time of a contact is bounded to within this, in radians."""
 
+_LATER: Final = 1e-7
+_EQUAL: Final = 1e-3
+
 Places = Callable[[FloatArray], FloatArray]
 
 
@@ -76,15 +79,18 @@ class PlateContacts:
                 high = middle
             else:
                 low = middle
-        there, rows = met(high)
-        return self.event((low, high), self.deepest(there, rows))
+        _, rows = met(high)
+        return self.event((low, high), self.deepest(high, places, rows))
 
-    def deepest(self, there: FloatArray, rows: IndexArray) -> tuple[int, int]:
-        """Of some pairs of prisms that overlap, the one that overlaps most."""
+    def deepest(self, time: float, places: Places, rows: IndexArray) -> tuple[int, int]:
+        """Of some pairs of prisms that overlap, the one that overlaps most a little later.
+
+        Of pairs that overlap equally, by symmetry, the first is taken.
+        """
+        there = self.plates.places(places(np.array([time + _LATER])))[0]
         prisms = self.plates.prisms
         gaps, _ = widest(there[prisms[self.pairs[rows, 0]]], there[prisms[self.pairs[rows, 1]]])
-        # Of pairs that overlap equally, by symmetry, the first is taken.
-        one, two = self.pairs[rows[int(np.argmax(gaps <= gaps.min() * (1 - 1e-6)))]]
+        one, two = self.pairs[rows[int(np.argmax(gaps <= gaps.min() * (1 - _EQUAL)))]]
         return int(one), int(two)
 
     def event(self, time: tuple[float, float], prisms: tuple[int, int]) -> Event:
