@@ -163,6 +163,7 @@ class MotionDocument(FrameKeys):
     modes: None
     way: None
     plates: None
+    """Branches are followed without thickness."""
     stops: dict[FoldText, Rational] | None
     """By fold i-j its stop in degrees; null without --stop."""
     warnings: list[WarningDocument]
@@ -175,6 +176,7 @@ class PlatesDocument(TypedDict):
     """Panels with a thickness, in the unit of the pattern."""
 
     thickness: Rational
+    """Of every panel."""
     hinge: Literal["middle", "valley"]
     """Where all hinges lie: in the middle of the panels, or in the upper surface."""
     trim: Rational
