@@ -1,0 +1,182 @@
+(* exactfold-verify: verifies certificates of exactfold with a program that is proved in Coq. *)
+
+open Reading
+module V = Verified
+
+let usage = "usage: exactfold-verify FILE\n\n\
+  Verifies a certificate of all branches (version 1 of the compact form) or of one branch (version 1) of\n\
+  a convex triangulated sheet. Exit codes: 0 verified, 1 refuted, 2 usage, 3 not a certificate of these kinds.\n"
+
+let claim claims key = entry key claims
+
+let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, but %s is true" key found expected
+
+let shown_sheet sheet (d : V.drawing) =
+  Printf.printf "sheet     %d vertices, %d inside and %d on the boundary, %d triangles, %d folds\ndigest    %s\n%!"
+    (Array.length sheet.points) (List.length d.inside) (List.length d.border) (List.length sheet.triangles)
+    (Array.length (folds sheet)) sheet.digest
+
+let whole_claim claims key = Z.to_string (whole key (claim claims key))
+
+let sheet_claims sheet (d : V.drawing) claims =
+  agrees "interior" (whole_claim claims "interior") (string_of_int (List.length d.inside));
+  agrees "sha256" (string "sha256" (claim claims "sha256")) sheet.digest
+
+(* --- all branches --- *)
+
+type root = { bits : int; center : Z.t array; letters : int -> bool option }
+
+let signed bytes at width =
+  let negative = Char.code (Bytes.get bytes (at + width - 1)) > 127 in
+  let n = Z.of_bits (Bytes.sub_string bytes at width) in
+  if negative then Z.sub n (Z.shift_left Z.one (8 * width)) else n
+
+let letter_of root text k = match text.[k] with
+  | 'M' -> Some false
+  | 'V' -> Some true
+  | 'U' -> None
+  | c -> refuse "root %d has a fold with the letter %c; only M, V and U are verified here" root c
+
+(* The roots of a block, which are read one by one. *)
+let block size folds number length data =
+  let j = parse data in
+  if small "block" (entry "block" j) <> number then refuse "block %d is expected" number;
+  if items "open" (entry "open" j) <> [] then invalid "block %d has open roots" number;
+  let bits = small "bits" (entry "bits" j) and width = small "width" (entry "width" j) in
+  let bytes key each = let found = decoded key (string key (entry key j)) in
+    if Bytes.length found <> length * each then refuse "block %d: \"%s\" has another length" number key; found in
+  let row = (folds + 7) / 8 in
+  let centers = bytes "centers" (size * width) and letters = bytes "folds" row in
+  let exact = List.map (fun e -> (small "root" (entry "root" e), e)) (items "exact" (entry "exact" j)) in
+  fun index -> match List.assoc_opt index exact with
+    | Some e ->
+      let text = string "assignment" (entry "assignment" e) in
+      if String.length text <> folds then refuse "root %d has another number of letters" index;
+      { bits = small "bits" (entry "bits" e); letters = letter_of index text;
+        center = Array.of_list (List.map (whole "center") (items "center" (entry "center" e))) }
+    | None ->
+      { bits; center = Array.init size (fun k -> signed centers (((index * size) + k) * width) width);
+        letters = fun k -> Some (Char.code (Bytes.get letters ((index * row) + (k / 8))) lsr (k mod 8) land 1 = 1) }
+
+let precisions = [ (56, 44); (120, 104); (248, 228); (504, 480); (1016, 984) ]
+
+let all_branches header blocks claims =
+  let evidence = entry "evidence" header in
+  let sheet = sheet (entry "pattern" header) in
+  if items "triangles" (entry "triangles" evidence) <> [] then
+    refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
+  if entry "chart" evidence <> Null then refuse "the sheet has a reflex corner, which is not in the scope of the formal proof";
+  let d = Proposing.drawing sheet in
+  let inside = Array.of_list (List.rev d.inside) in
+  let size = Array.length inside in
+  if List.length d.border <> 4 then refuse "the sheet has %d boundary vertices, not four" (List.length d.border);
+  if size = 0 || size > 30 then refuse "%d vertices inside: between 1 and 30 are verified" size;
+  let length = small "block" (entry "block" evidence) in
+  if length <= 0 || 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
+  shown_sheet sheet d;
+  let p = Proposing.prepared sheet d in
+  let folds = List.length p.V.folds in
+  let blocks = Array.of_list blocks in
+  let slot = Array.make (Array.length sheet.points) (-1) in
+  List.iteri (fun k v -> slot.(v) <- k) d.inside;
+  let lights = Array.of_list (List.map (Proposing.light p slot) p.V.hubs) in
+  let unit = List.nth d.border 3 in
+  let number e = let n = ref 0 in Array.iteri (fun k v -> if not (e v) then n := !n lor (1 lsl k)) inside; !n in
+  let now = ref (-1, fun _ -> assert false) in
+  let root n =
+    if fst !now <> n / length then now := (n / length, block size folds (n / length) length blocks.(n / length));
+    snd !now (n mod length) in
+  let heights root (bits, aim) =
+    let h = Array.make (Array.length sheet.points) Z.zero in
+    let shift = bits - root.bits in
+    Array.iteri (fun k v -> let c = root.center.(k) in
+      h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
+    h.(unit) <- Z.shift_left Z.one bits;
+    h in
+  (* what is proposed for a sign vector: tried with more and more digits *)
+  let proposed = ref (-1, [||], fun _ -> None) in
+  let propose e =
+    let n = number e in
+    let known, _, _ = !proposed in
+    if known <> n then begin
+      let root = root n in
+      if Array.length root.center <> size then refuse "root %d has another number of heights" n;
+      let rec refine = function
+        | [] -> [||]
+        | (bits, aim) :: more ->
+          let h = heights root (bits, aim) in
+          for _ = 1 to (if bits = 56 then 1 else 3 + (bits / 40)) do Proposing.step lights h bits aim done;
+          if V.passes p e (fun u -> h.(u)) root.letters then h else refine more in
+      let h = refine precisions in
+      if h = [||] then invalid "root %d was not verified" n;
+      if n land 65535 = 65535 || n land 65535 = 0 then (Printf.eprintf "\r%d of %d roots%!" (n + 1) (1 lsl size));
+      proposed := (n, h, root.letters)
+    end in
+  let top e = propose e; let _, h, _ = !proposed in h.(unit) in
+  let given e = propose e; let _, h, _ = !proposed in fun u -> h.(u) in
+  let asked e = propose e; let _, _, letters = !proposed in letters in
+  if not (V.verify_all d p top given asked) then invalid "the sheet or a root was not verified";
+  if size > 15 then prerr_newline ();
+  let count = string_of_int (1 lsl size) in
+  sheet_claims sheet d claims;
+  List.iter (fun (key, true_) -> agrees key (whole_claim claims key) true_)
+    [ ("distinct", count); ("with_multiplicity", count); ("real", count); ("nonreal", "0"); ("boundary", "4");
+      ("folds", string_of_int folds); ("degrees_of_freedom", "1") ];
+  Printf.printf "VERIFIED  exactly %s branches to second order, complex ones included; all are real and simple,\n\
+    \          one for each sign vector; all letters M and V. By theorem all_verified.\n" count
+
+(* --- one branch --- *)
+
+let one_branch data =
+  let claims = entry "claims" data and evidence = entry "evidence" data in
+  let sheet = sheet (entry "pattern" data) in
+  if items "emptied" (entry "emptied" evidence) <> [] then
+    refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
+  let d = Proposing.drawing sheet in
+  shown_sheet sheet d;
+  let p = Proposing.prepared sheet d in
+  let h = Array.of_list (List.map (whole "a height") (items "heights" (entry "heights" evidence))) in
+  let inside = Array.of_list (List.rev d.V.inside) in
+  let signs = Array.of_list (List.map (small "a vertex sign") (items "vertex_signs" (entry "vertex_signs" claims))) in
+  if Array.length h <> Array.length sheet.points || Array.length signs <> Array.length inside then
+    refuse "the numbers of heights, signs and vertices differ";
+  let ups = Array.make (Array.length h) false in
+  Array.iteri (fun k v -> if signs.(k) = 0 then refuse "vertex %d is flat, which is not in the scope of the formal proof" v;
+    ups.(v) <- signs.(k) > 0) inside;
+  let text = string "assignment" (entry "assignment" claims) in
+  if String.length text <> List.length p.V.folds then refuse "the number of letters is wrong";
+  if not (V.verify_one d p (fun v -> ups.(v)) (fun u -> h.(u)) (letter_of 0 text)) then
+    invalid "the sheet or the branch was not verified";
+  Printf.printf "VERIFIED  exactly one solution over these boundary heights has these %d vertex signs; all letters M\n\
+    \          and V. By theorem one_verified.\n" (Array.length inside)
+
+let verify path =
+  let text = file path in
+  let first = try String.sub text 0 (String.index text '\n') with Not_found -> text in
+  if String.contains first '\t' then
+    match List.map Fun.id (lines text) with
+    | header :: rest when rest <> [] ->
+      let header = parse header in
+      if string "format" (entry "format" header) <> "exactfold compact certificate" || whole_claim header "version" <> "1" then
+        refuse "only version 1 of compact certificates is verified here";
+      let reversed = List.rev rest in
+      let claims = match parse (List.hd reversed) with
+        | Entries [ ("claims", c) ] -> c
+        | _ -> invalid "the file is UNFINISHED: its last line has no claims" in
+      all_branches header (List.rev (List.tl reversed)) claims
+    | _ -> refuse "the file has no blocks"
+  else begin
+    let data = parse text in
+    if string "format" (entry "format" data) <> "exactfold branch" || whole_claim data "version" <> "1" then
+      refuse "only version 1 of certificates of one branch is verified here";
+    one_branch data
+  end
+
+let () =
+  match Sys.argv with
+  | [| _; ("-h" | "--help") |] -> print_string usage
+  | [| _; path |] -> (try verify path with
+    | Invalid why -> Printf.printf "INVALID   %s\n" why; exit 1
+    | Refused why -> Printf.eprintf "exactfold-verify: %s\n" why; exit 3
+    | Sys_error why -> Printf.eprintf "exactfold-verify: %s\n" why; exit 3)
+  | _ -> prerr_string usage; exit 2
