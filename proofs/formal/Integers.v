@@ -78,19 +78,22 @@ Definition is_asked (asked : nat -> letter) (k : nat) : bool :=
   match asked k with Some _ => true | None => false end.
 
 (** The bound of the distance, if every vertex passes. *)
-Fixpoint distance_of (up : nat -> bool) (h : zheights) (asked : nat -> letter) (bs : list hub) : option Z :=
+Fixpoint distance_of (up : nat -> bool) (h : zheights) (bs : list hub) : option Z :=
   match bs with
   | [] => Some 0%Z
   | b :: bs =>
     let (k, s) := measured h (h (at_vertex b)) (wedges b) in
-    if (0 <? k)%Z && (if up (at_vertex b) then 0 <? s else s <? 0)%Z && existsb (is_asked asked) (here b)
-    then match distance_of up h asked bs with Some far => Some (far + share b * k)%Z | None => None end
+    if (0 <? k)%Z && (if up (at_vertex b) then 0 <? s else s <? 0)%Z
+    then match distance_of up h bs with Some far => Some (far + share b * k)%Z | None => None end
     else None
   end.
 
+(** A fold at the vertex has a letter that is asked for. *)
+Definition is_bent (asked : nat -> letter) (b : hub) : bool := existsb (is_asked asked) (here b).
+
 (** The test of one branch. *)
 Definition passes (p : prepared) (up : nat -> bool) (h : zheights) (asked : nat -> letter) : bool :=
-  match distance_of up h asked (hubs p) with
+  match distance_of up h (hubs p) with
   | None => false
   | Some far => forallb (fold_passes h asked far (units p)) (folds p)
   end.
@@ -100,9 +103,16 @@ Definition passes (p : prepared) (up : nat -> bool) (h : zheights) (asked : nat 
 Section Prepared.
 Variable d : drawing.
 Variable p : prepared.
+(** Tables: places, neighbours, whether a vertex is on the sheet, and folds by their numbers. *)
+Variable at_z : nat -> zvector.
+Variable fan_of : nat -> list nat.
+Variable known : nat -> bool.
+Variable fold_at : nat -> option fold_form.
+
+Definition arm (v u : nat) : zvector := (fst (at_z u) - fst (at_z v), snd (at_z u) - snd (at_z v))%Z.
 
 Definition wedge_ok (v : nat) (D : Z) (t : nat -> Z) (w : wedge_form) : bool :=
-  let a := zspoke d v (left w) in let b := zspoke d v (right w) in
+  let a := arm v (left w) in let b := arm v (right w) in
   let c := zturn a b in let s := (D * zdot a b)%Z in
   let y := (t (left w) - t v)%Z in let y' := (t (right w) - t v)%Z in
   (mixed w * c =? D)%Z && (square w * (2 * c * zdot a a) =? s)%Z && (square' w * (2 * c * zdot b b) =? s)%Z &&
@@ -110,8 +120,8 @@ Definition wedge_ok (v : nat) (D : Z) (t : nat -> Z) (w : wedge_form) : bool :=
 
 (** Four times the multiplier of a vertex. *)
 Definition multiplier4 (v : nat) : Z :=
-  let x := (2 * fst (place d v) - fst (centre2 p))%Z in
-  let y := (2 * snd (place d v) - snd (centre2 p))%Z in (radius4 p - (x * x + y * y))%Z.
+  let x := (2 * fst (at_z v) - fst (centre2 p))%Z in
+  let y := (2 * snd (at_z v) - snd (centre2 p))%Z in (radius4 p - (x * x + y * y))%Z.
 
 Fixpoint same_steps (ws : list wedge_form) (ss : list (nat * nat)) : bool :=
   match ws, ss with
@@ -121,22 +131,24 @@ Fixpoint same_steps (ws : list wedge_form) (ss : list (nat * nat)) : bool :=
   end.
 
 Definition touches (v k : nat) : bool :=
-  existsb (fun f => let '(i, j, _, _) := ends f in
-    Nat.eqb (name f) k && (Nat.eqb i v || Nat.eqb j v)) (folds p).
+  match fold_at k with
+  | Some f => let '(i, j, _, _) := ends f in Nat.eqb (name f) k && (Nat.eqb i v || Nat.eqb j v)
+  | None => false
+  end.
 
 Definition hub_ok (b : hub) : bool :=
-  let v := at_vertex b in let fan := nth v (fans_of d) [] in let t := mountain_at b in
+  let v := at_vertex b in let fan := fan_of v in let t := mountain_at b in
   (0 <? scale b)%Z && same_steps (wedges b) (steps fan) && forallb (wedge_ok v (scale b) t) (wedges b) &&
   (0 <? fst (measured t (t v) (wedges b)))%Z && forallb (fun u => t u <? t v)%Z fan &&
   (multiplier4 v * units p <=? share b * (4 * scale b))%Z && forallb (touches v) (here b).
 
-Definition is_step (v : nat) (s : nat * nat) : bool := mem2 s (steps (nth v (fans_of d) [])).
+Definition is_step (v : nat) (s : nat * nat) : bool := mem2 s (steps (fan_of v)).
 
 Definition form_ok (f : fold_form) : bool :=
   let '(i, j, l, m) := ends f in
-  let e := zspoke d i j in let a := zspoke d i l in let b := zspoke d i m in
+  let e := arm i j in let a := arm i l in let b := arm i m in
   let c := zturn e a in let c' := zturn b e in let n := zdot e e in
-  mem i (inside d ++ border d) && is_step i (j, l) && is_step i (m, j) &&
+  known i && is_step i (j, l) && is_step i (m, j) &&
   (along f =? - (c' * zdot a e + c * zdot b e))%Z && (toward_l f =? c' * n)%Z && (toward_m f =? c * n)%Z &&
   (slack2 f =? 2 * n * (c + c') * (c * c'))%Z.
 
@@ -163,7 +175,14 @@ Ltac inReals H := repeat rewrite ?plus_IZR, ?minus_IZR, ?mult_IZR, ?opp_IZR in H
 Ltac inGoal := repeat rewrite ?plus_IZR, ?minus_IZR, ?mult_IZR, ?opp_IZR.
 
 Hypothesis ok : check d = true.
+Hypothesis at_eq : at_z = place d.
+Hypothesis fan_eq : fan_of = fun v => nth v (fans_of d) [].
+Hypothesis known_in : forall v, known v = true -> In v (inside d ++ border d).
+Hypothesis fold_in : forall k f, fold_at k = Some f -> In f (folds p).
 Notation S := (sheet_of d ok).
+
+Lemma arm_eq : arm = zspoke d.
+Proof. unfold arm, zspoke. now rewrite at_eq. Qed.
 
 Lemma same_list_eq l l' : same_list l l' = true -> l = l'.
 Proof.
@@ -178,7 +197,7 @@ Lemma wedge_R v D t w (x y : R) : In v (inside d ++ border d) ->
   IZR (side w) * x + IZR (side' w) * y =
     2 * IZR D * wedge2 a b (IZR (t (left w)) - IZR (t v)) (IZR (t (right w)) - IZR (t v)) x y.
 Proof.
-  intros Hv Hs W. pose proof (step_left S v _ _ Hv Hs) as C. cbv zeta. unfold wedge_ok in W.
+  intros Hv Hs W. pose proof (step_left S v _ _ Hv Hs) as C. cbv zeta. unfold wedge_ok in W. rewrite arm_eq in W.
   rewrite !(spoke_R d ok) in *. set (A := zspoke d v (left w)) in *. set (B := zspoke d v (right w)) in *.
   apply Rgt_not_eq in C. pose proof (cross_left _ _ C) as M. pose proof (cross_right _ _ C) as M'.
   unfold wedge2. rewrite !dot_R, turn_R in *. rewrite !andb_true_iff, !Z.eqb_eq in W.
@@ -207,7 +226,7 @@ Proof.
   subst a b. pose proof (Sub _ (or_introl eq_refl)) as Hs.
   destruct (wedge_R v D t w (reals h (left w) - reals h v) (reals h (right w) - reals h v) Hv Hs W) as (W1 & W2).
   cbn [measured]. destruct (measured h (h v) ws) as (k, s). cbn [fst snd sum] in *.
-  unfold reals in *. inReals IH1. rewrite ?plus_IZR, ?minus_IZR, ?mult_IZR, ?plus_IZR, ?minus_IZR, ?mult_IZR, ?minus_IZR.
+  unfold reals in *. inReals IH1. inGoal.
   rewrite IH1, IH2, !Rmult_plus_distr_l, <- W1, <- W2. split; ring.
 Qed.
 
@@ -218,16 +237,15 @@ Proof.
 Qed.
 
 (** What a vertex that passes shows. *)
-Lemma hub_R b (up : nat -> bool) h asked : prepared_ok = true -> In b (hubs p) ->
+Lemma hub_R b (up : nat -> bool) h : prepared_ok = true -> In b (hubs p) ->
   let v := at_vertex b in let (k, s) := measured h (h v) (wedges b) in
   IZR k = IZR (scale b) * K S v (reals h) /\
-  ((0 < k)%Z -> (if up v then 0 < s else s < 0)%Z -> existsb (is_asked asked) (here b) = true ->
-    0 < K S v (reals h) /\ 0 < sign (up v) * K2 S v (cone S v) (reals h) /\
-    exists f, In f (folds p) /\ is_asked asked (name f) = true /\ touches v (name f) = true).
+  ((0 < k)%Z -> (if up v then 0 < s else s < 0)%Z ->
+    0 < K S v (reals h) /\ 0 < sign (up v) * K2 S v (cone S v) (reals h)).
 Proof.
   intros Ok Hb. destruct (hub_means b Ok Hb) as (Hi & H). cbv zeta. set (v := at_vertex b) in *.
   assert (Hv : In v (inside d ++ border d)) by (apply in_or_app; now left).
-  unfold hub_ok in H. fold v in H. rewrite !andb_true_iff, !forallb_forall in H.
+  unfold hub_ok in H. fold v in H. rewrite fan_eq in H. rewrite !andb_true_iff, !forallb_forall in H.
   destruct H as ((((((Ps & Ss) & Ws) & Pt) & Down) & _) & Near).
   rewrite <- forallb_forall in Ws. apply Z.ltb_lt, IZR_lt in Ps.
   set (t := mountain_at b) in *.
@@ -239,25 +257,36 @@ Proof.
   change (IZR s = 2 * IZR (scale b) * K2 S v (reals t) (reals h)) in Msd.
   change (0 < IZR (scale b) * K2 S v (reals t) (reals t)) in Pt.
   assert (Pt' : 0 < K2 S v (reals t) (reals t)).
-  { apply (Rmult_lt_reg_l (IZR (scale b))); [assumption|]. now rewrite Rmult_0_r. }
-  split; [now rewrite <- K_polar_sheet by assumption|]. intros Pk Sd As.
+  { apply (Rmult_lt_reg_l (IZR (scale b))); [assumption|].
+    now rewrite Rmult_0_r. }
+  split; [now rewrite <- K_polar_sheet by assumption|]. intros Pk Sd.
   assert (Pk' : 0 < K2 S v (reals h) (reals h)).
-  { apply IZR_lt in Pk. rewrite Mk in Pk. apply (Rmult_lt_reg_l (IZR (scale b))); [assumption|]. now rewrite Rmult_0_r. }
-  split; [now rewrite <- K_polar_sheet by assumption|]. split.
-  - apply (side_by_mountain S v (reals t)); try assumption.
-    + intros u Hu. unfold reals. apply IZR_lt, Z.ltb_lt. now apply Down.
-    + assert (Two : 0 < 2 * IZR (scale b)) by lra.
-      apply (Rmult_lt_reg_l (2 * IZR (scale b))); [assumption|]. rewrite Rmult_0_r.
-      destruct (up v); apply IZR_lt in Sd; rewrite Msd in Sd; unfold sign; lra.
-  - apply existsb_exists in As. destruct As as (x & Hx & As). specialize (Near x Hx).
-    pose proof Near as N. unfold touches in N. apply existsb_exists in N. destruct N as (f & Hf & E).
-    destruct (ends f) as [[[i j] l] m]. rewrite andb_true_iff, Nat.eqb_eq in E. destruct E as (<- & _).
-    now exists f.
+  { apply IZR_lt in Pk. rewrite Mk in Pk. apply (Rmult_lt_reg_l (IZR (scale b))); [assumption|].
+    now rewrite Rmult_0_r. }
+  split; [now rewrite <- K_polar_sheet by assumption|].
+  apply (side_by_mountain S v (reals t)); try assumption.
+  - intros u Hu. unfold reals. apply IZR_lt, Z.ltb_lt. now apply Down.
+  - assert (Two : 0 < 2 * IZR (scale b)) by lra.
+    apply (Rmult_lt_reg_l (2 * IZR (scale b))); [assumption|]. rewrite Rmult_0_r.
+    destruct (up v); apply IZR_lt in Sd; rewrite Msd in Sd; unfold sign; lra.
 Qed.
 
-Lemma distance_means (up : nat -> bool) h asked far : prepared_ok = true -> distance_of up h asked (hubs p) = Some far ->
-  (forall v, In v (inside d) -> 0 < K S v (reals h) /\ 0 < sign (up v) * K2 S v (cone S v) (reals h) /\
-    exists f, In f (folds p) /\ is_asked asked (name f) = true /\ touches v (name f) = true) /\
+(** A vertex that is bent has a fold whose letter is asked for. *)
+Lemma bent_means b asked : prepared_ok = true -> In b (hubs p) -> is_bent asked b = true ->
+  exists f i j l m valley, In f (folds p) /\ ends f = (i, j, l, m) /\ asked (name f) = Some valley /\
+    (i = at_vertex b \/ j = at_vertex b).
+Proof.
+  intros Ok Hb As. destruct (hub_means b Ok Hb) as (_ & H). unfold hub_ok in H.
+  rewrite !andb_true_iff, !forallb_forall in H. destruct H as (_ & Near).
+  apply existsb_exists in As. destruct As as (x & Hx & As). specialize (Near x Hx). unfold touches in Near.
+  destruct (fold_at x) as [f|] eqn:Hf; [|discriminate]. destruct (ends f) as [[[i j] l] m] eqn:E.
+  rewrite andb_true_iff, orb_true_iff, !Nat.eqb_eq in Near. destruct Near as (Nm & T).
+  unfold is_asked in As. destruct (asked x) as [valley|] eqn:A; [|easy].
+  exists f, i, j, l, m, valley. rewrite Nm. repeat split; try assumption. now apply (fold_in x).
+Qed.
+
+Lemma distance_means (up : nat -> bool) h far : prepared_ok = true -> distance_of up h (hubs p) = Some far ->
+  (forall v, In v (inside d) -> 0 < K S v (reals h) /\ 0 < sign (up v) * K2 S v (cone S v) (reals h)) /\
   sum (inside d) (fun v => IZR (multiplier4 v) * K S v (reals h)) <= 4 * IZR far / IZR (units p).
 Proof.
   intros Ok. assert (Pu : 0 < IZR (units p)).
@@ -270,15 +299,15 @@ Proof.
   revert Sub far. generalize (hubs p) at 1 3 4 5. induction l as [|b l IH]; intros Sub far.
   { intros [= <-]. split; [easy|]. cbn [sum]. unfold Rdiv. lra. }
   cbn [distance_of map sum].
-  pose proof (hub_R b up h asked Ok (Sub b (or_introl eq_refl))) as M. cbv zeta in M.
+  pose proof (hub_R b up h Ok (Sub b (or_introl eq_refl))) as M. cbv zeta in M.
   destruct (hub_means b Ok (Sub b (or_introl eq_refl))) as (_ & H).
   destruct (measured h (h (at_vertex b)) (wedges b)) as (k, s). destruct M as (Mk & M).
-  destruct (_ && _) eqn:C; [|discriminate]. rewrite !andb_true_iff in C. destruct C as ((Pk & Sd) & As).
-  destruct (distance_of up h asked l) as [rest|] eqn:D; [|discriminate]. intros [= <-].
+  destruct (_ && _) eqn:C; [|discriminate]. rewrite andb_true_iff in C. destruct C as (Pk & Sd).
+  destruct (distance_of up h l) as [rest|] eqn:D; [|discriminate]. intros [= <-].
   destruct (IH (fun c Hc => Sub c (or_intror Hc)) rest eq_refl) as (All & Far).
   apply Z.ltb_lt in Pk.
   assert (Sd' : (if up (at_vertex b) then 0 < s else s < 0)%Z) by (destruct (up (at_vertex b)); now apply Z.ltb_lt).
-  destruct (M Pk Sd' As) as (PK & M').
+  destruct (M Pk Sd') as (PK & M').
   split.
   - intros v [<-|Hv]; [now split|]. now apply All.
   - unfold hub_ok in H. rewrite !andb_true_iff in H. destruct H as ((((((Ps & _) & _) & _) & _) & W) & _).
@@ -295,7 +324,7 @@ Proof.
 Qed.
 
 Lemma mem2_step v a b : is_step v (a, b) = true -> In (a, b) (steps (fan S v)).
-Proof. intros H. now apply mem2_in in H. Qed.
+Proof. unfold is_step. rewrite fan_eq. intros H. now apply mem2_in in H. Qed.
 
 (** The bend of a fold, from either end. *)
 Lemma tilt_turned i j l h : cross (spoke (at_ S) i j) (spoke (at_ S) i l) <> 0 -> tilt S j l i h = tilt S i j l h.
@@ -325,7 +354,7 @@ Lemma bent_R h f i j l m : ends f = (i, j, l, m) -> form_ok f = true ->
    IZR (slack2 f) = 2 * dot (s i j) (s i j) * (c + c') * (c * c')).
 Proof.
   intros E H. unfold form_ok in H. rewrite E in H. rewrite !andb_true_iff in H.
-  destruct H as ((((((Hi & S1) & S2) & A) & L) & M) & Sl). apply mem_in in Hi.
+  destruct H as ((((((Hi & S1) & S2) & A) & L) & M) & Sl). apply known_in in Hi. rewrite arm_eq in *.
   apply mem2_step in S1, S2. apply (step_corner S i _ _ Hi) in S1, S2.
   split; [assumption|]. split; [assumption|]. cbv zeta.
   pose proof (face_of_corner S _ _ _ S1) as C1. pose proof (face_of_corner S _ _ _ S2) as C2.
@@ -348,21 +377,24 @@ Definition asked_folds (asked : nat -> letter) : list (nat * nat * nat * nat * b
     | None => []
     end) (folds p).
 
-(** What passes the test is proved: exactly one branch with these heights of the rim has these signs,
-    and its folds have the letters asked for. *)
+(** What passes the test is proved: exactly one branch with these heights of the rim lies in these
+    closed nappes; it has these signs where it is bent, and its folds have the letters asked for. *)
 Theorem passed (up : nat -> bool) h asked : prepared_ok = true -> passes p up h asked = true ->
-  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ has_signs S up g /\
+  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ in_nappes S up g /\
+    (forall b, In b (hubs p) -> is_bent asked b = true ->
+      0 < sign (up (at_vertex b)) * K2 S (at_vertex b) (cone S (at_vertex b)) g) /\
     (forall g', has_rim S (reals h) g' -> solves S (fun _ => 0) g' -> in_nappes S up g' -> g' = g) /\
     (forall f i j l m valley, In f (folds p) -> ends f = (i, j, l, m) -> asked (name f) = Some valley ->
       0 < sign valley * bend S i j l m g).
 Proof.
-  intros Ok. unfold passes. destruct (distance_of up h asked (hubs p)) as [far|] eqn:D; [|discriminate].
-  rewrite forallb_forall. intros Fs. destruct (distance_means up h asked far Ok D) as (Vs & Far).
+  intros Ok. unfold passes. destruct (distance_of up h (hubs p)) as [far|] eqn:D; [|discriminate].
+  rewrite forallb_forall. intros Fs. destruct (distance_means up h far Ok D) as (Vs & Far).
   pose proof Ok as O. unfold prepared_ok in O. rewrite !andb_true_iff, !forallb_forall in O.
   destruct O as (((_ & Forms) & Pu) & Ws). apply Z.ltb_lt, IZR_lt in Pu.
   set (c := (IZR (fst (centre2 p)) / 2, IZR (snd (centre2 p)) / 2) : point).
   assert (Weight : forall v, multiplier S c (IZR (radius4 p) / 4) v = IZR (multiplier4 v) / 4).
-  { intros v. unfold multiplier, multiplier4, c, dot, sub. cbn [fst snd at_ sheet_of]. unfold at_R. cbn [fst snd].
+  { intros v. unfold multiplier, multiplier4, c, dot, sub. rewrite at_eq.
+    cbn [fst snd at_ sheet_of]. unfold at_R. cbn [fst snd].
     inGoal. field. }
   assert (Fold : forall f i j l m valley, In f (folds p) -> ends f = (i, j, l, m) -> asked (name f) = Some valley ->
     In (i, j, l) (corners (faces S)) /\ In (i, m, j) (corners (faces S)) /\
@@ -385,8 +417,8 @@ Proof.
       replace (_ * (w * w)) with (IZR (units p) * (a * b * w * (a * b * w))) by ring.
       replace (_ * _) with (2 * n * (a + b) * (a * b) * IZR far) by (field; lra). exact Big. }
   destruct (near_branch S up (reals h) c (IZR (radius4 p) / 4) (IZR far / IZR (units p)) (asked_folds asked))
-    as (g & Gr & Gs & Gn & U & _ & Lt).
-  - intros v Hv. destruct (Vs v Hv) as (P & Q & _). now split.
+    as (g & Gr & Gs & Gn & Sg & U & _ & Lt).
+  - intros v Hv. now apply Vs.
   - intros v Hv. rewrite Weight. specialize (Ws v Hv). apply Z.leb_le, IZR_le in Ws. lra.
   - rewrite (sum_ext _ _ (fun v => / 4 * (IZR (multiplier4 v) * K S v (reals h)))).
     + rewrite sum_scal. unfold Rdiv in *. change (inner S) with (inside d). lra.
@@ -405,18 +437,12 @@ Proof.
       by (unfold cross, Sheet.spoke, sub; cbn [fst snd]; ring).
     replace (cross (spoke (at_ S) j0 l0) (spoke (at_ S) j0 i0)) with (cross (spoke (at_ S) i0 j0) (spoke (at_ S) i0 l0))
       by (unfold cross, Sheet.spoke, sub; cbn [fst snd]; ring).
-    replace (2 / cross (spoke (at_ S) i0 m0) (spoke (at_ S) i0 j0) + 2 / cross (spoke (at_ S) i0 j0) (spoke (at_ S) i0 l0))
-      with (2 / cross (spoke (at_ S) i0 j0) (spoke (at_ S) i0 l0) + 2 / cross (spoke (at_ S) i0 m0) (spoke (at_ S) i0 j0))
-      by ring.
-    exact Big.
-  - intros v Hv. destruct (Vs v Hv) as (_ & _ & f & Hf & As & T). unfold touches in T.
-    apply existsb_exists in T. destruct T as (f' & Hf' & T). destruct (ends f') as [[[i j] l] m] eqn:E.
-    rewrite andb_true_iff, orb_true_iff, !Nat.eqb_eq in T. destruct T as (Nm & T).
-    unfold is_asked in As. rewrite <- Nm in As. destruct (asked (name f')) as [w|] eqn:A; [|easy].
-    destruct T as [->| ->].
-    + exists j, l, m, w. apply in_flat_map. exists f'. split; [assumption|]. rewrite A, E. now left.
-    + exists i, m, l, w. apply in_flat_map. exists f'. split; [assumption|]. rewrite A, E. right. now left.
-  - exists g. split; [assumption|]. split; [assumption|]. split; [assumption|]. split; [assumption|].
-    intros f i j l m valley Hf E As. apply Lt, in_flat_map. exists f. split; [assumption|]. rewrite As, E. now left.
+    rewrite (Rplus_comm (2 / cross (spoke (at_ S) i0 m0) (spoke (at_ S) i0 j0))). exact Big.
+  - exists g. split; [assumption|]. split; [assumption|]. split; [assumption|]. split; [|split; [assumption|]].
+    + intros b Hb Bn. destruct (bent_means b asked Ok Hb Bn) as (f & i & j & l & m & w & Hf & E & A & T).
+      destruct (hub_means b Ok Hb) as (Hi & _).
+      destruct T as [T|T]; [apply (Sg _ j l m w Hi)|apply (Sg _ i m l w Hi)];
+        apply in_flat_map; exists f; (split; [assumption|]); rewrite A, E, <- T; simpl; tauto.
+    + intros f i j l m valley Hf E As. apply Lt, in_flat_map. exists f. split; [assumption|]. rewrite As, E. now left.
 Qed.
 End Prepared.

@@ -2,23 +2,52 @@
     given, and what it prepares from them, are not trusted. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Star KeyLemma Flat Complex Theorems Branches
-  Drawing Rational Certificate Integers.
+  Drawing Tables Rational Certificate Integers.
 Import ListNotations.
 Open Scope R_scope.
 
 (** ** One branch *)
 
-Definition verify_one (d : drawing) (p : prepared) (up : nat -> bool) (h : zheights) (asked : nat -> letter) : bool :=
-  check d && prepared_ok d p && passes p up h asked.
+(** A drawing is a sheet, and what was prepared belongs to it. *)
+Definition sound (d : drawing) (p : prepared) : bool :=
+  let places := places d in let fans := fans_table d in
+  let known := set_of (inside d ++ border d) in let fold_table := table (folds p) in
+  swift_check d places fans &&
+  prepared_ok d p (look places (0, 0)%Z) (look fans []) (has known) (fun k => Map.find (key k) fold_table).
 
-Theorem one_verified d p up h asked : verify_one d p up h asked = true ->
-  exists ok : check d = true, let S := sheet_of d ok in
-  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ has_signs S up g /\
+(** What a test of one branch proves. *)
+Definition proved (d : drawing) (p : prepared) (ok : check d = true) up h asked : Prop :=
+  let S := sheet_of d ok in
+  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ in_nappes S up g /\
+    (forall b, In b (hubs p) -> is_bent asked b = true ->
+      0 < sign (up (at_vertex b)) * K2 S (at_vertex b) (cone S (at_vertex b)) g) /\
     (forall g', has_rim S (reals h) g' -> solves S (fun _ => 0) g' -> in_nappes S up g' -> g' = g) /\
     (forall f i j l m valley, In f (folds p) -> ends f = (i, j, l, m) -> asked (name f) = Some valley ->
       0 < sign valley * bend S i j l m g).
+
+Lemma sound_means d p : sound d p = true ->
+  exists ok : check d = true, inside d = map at_vertex (hubs p) /\
+    forall up h asked, passes p up h asked = true -> proved d p ok up h asked.
 Proof.
-  unfold verify_one. rewrite !andb_true_iff. intros ((ok & Ok) & Pass). exists ok. exact (passed d p ok up h asked Ok Pass).
+  unfold sound. cbv zeta. rewrite andb_true_iff. intros (Sw & Ok). exists (swift_checked d Sw). split.
+  { unfold prepared_ok in Ok. rewrite !andb_true_iff in Ok. destruct Ok as ((((E & _) & _) & _) & _).
+    symmetry. now apply same_list_eq. }
+  intros up h asked.
+  apply (passed d p _ _ _ _ (swift_checked d Sw)) with (5 := Ok).
+  - exact (table_nth _ _).
+  - exact (table_nth _ _).
+  - intros v Hv. now apply has_In in Hv.
+  - intros k f Hf. now apply table_In in Hf.
+Qed.
+
+Definition verify_one (d : drawing) (p : prepared) (up : nat -> bool) (h : zheights) (asked : nat -> letter) : bool :=
+  sound d p && passes p up h asked.
+
+Theorem one_verified d p up h asked : verify_one d p up h asked = true ->
+  exists ok : check d = true, proved d p ok up h asked.
+Proof.
+  unfold verify_one. rewrite andb_true_iff. intros (So & Pass). destruct (sound_means d p So) as (ok & _ & H).
+  exists ok. now apply H.
 Qed.
 
 (** ** All branches *)
@@ -51,12 +80,12 @@ Definition with_rim (b4 : nat) (s : Z) (h : zheights) : zheights := fun u =>
   if mem u (inside d) then h u else if Nat.eqb u b4 then s else 0%Z.
 
 Definition test (b4 : nat) (e : nat -> bool) : bool :=
-  (0 <? top e)%Z && passes p e (with_rim b4 (top e) (given e)) (asked e).
+  (0 <? top e)%Z && forallb (is_bent (asked e)) (hubs p) && passes p e (with_rim b4 (top e) (given e)) (asked e).
 
 Definition verify_all : bool :=
   match border d with
   | [b1; b2; b3; b4] =>
-    check d && prepared_ok d p && negb (zcross d b1 b2 b3 =? 0)%Z && every (inside d) (test b4)
+    sound d p && negb (zcross d b1 b2 b3 =? 0)%Z && every (inside d) (test b4)
   | _ => false
   end.
 
@@ -92,16 +121,18 @@ Theorem all_verified : verify_all = true ->
        0 < sign valley * bend S i j l m h).
 Proof.
   unfold verify_all. destruct (border d) as [|b1 [|b2 [|b3 [|b4 [|b5 r]]]]] eqn:Rim; try discriminate.
-  rewrite !andb_true_iff. intros (((ok & Ok) & Cor) & All). exists ok, b1, b2, b3, b4. split; [reflexivity|].
+  rewrite !andb_true_iff. intros ((So & Cor) & All). destruct (sound_means d p So) as (ok & Hubs & Ok).
+  exists ok, b1, b2, b3, b4. split; [reflexivity|].
   set (S := sheet_of d ok). assert (All' := every_all _ _ All).
   (* every representative has a certified multiple *)
   assert (Near : forall h, representative S b4 h -> forall e, In e (sign_vectors (inside d)) -> in_nappes S e h ->
     exists s, 0 < s /\ has_signs S e h /\ forall f i j l m valley,
       In f (folds p) -> ends f = (i, j, l, m) -> asked e (name f) = Some valley -> 0 < sign valley * bend S i j l m h).
-  { intros h (Hr & Hs) e He Hn. specialize (All' e He). unfold test in All'. rewrite andb_true_iff in All'.
-    destruct All' as (Pt & Pass). apply Z.ltb_lt, IZR_lt in Pt. set (s := IZR (top e)) in *.
-    destruct (passed d p ok e _ _ Ok Pass) as (g & Gr & Gs & Gn & U & Lt).
-    change (sheet_of d ok) with S in Gr, Gs, Gn, U, Lt.
+  { intros h (Hr & Hs) e He Hn. specialize (All' e He). unfold test in All'.
+    rewrite !andb_true_iff, forallb_forall in All'.
+    destruct All' as ((Pt & Bent) & Pass). apply Z.ltb_lt, IZR_lt in Pt. set (s := IZR (top e)) in *.
+    destruct (Ok e _ _ Pass) as (g & Gr & Gs & _ & Gb & U & Lt).
+    change (sheet_of d ok) with S in Gr, Gs, Gb, U, Lt.
     assert (E : scaled_up s h = g).
     { apply U.
       - intros u Hu. unfold scaled_up, move, zero. rewrite (Hr u Hu). unfold reals, with_rim.
@@ -115,7 +146,8 @@ Proof.
         + replace (sign (e v) * (s * K2 S v (cone S v) h)) with (s * (sign (e v) * K2 S v (cone S v) h)) by ring.
           apply Rmult_le_pos; lra. }
     exists s. split; [assumption|]. split.
-    - intros v Hv. specialize (Gn v Hv). rewrite <- E, K2_scaled in Gn.
+    - intros v Hv. change (inner S) with (inside d) in Hv. rewrite Hubs in Hv. apply in_map_iff in Hv.
+      destruct Hv as (b & <- & Hb). pose proof (Gb b Hb (Bent b Hb)) as Gn. rewrite <- E, K2_scaled in Gn.
       apply (Rmult_lt_reg_l s); [assumption|]. lra.
     - intros f i j l m valley Hf En As. specialize (Lt f i j l m valley Hf En As). rewrite <- E, bend_scaled in Lt.
       apply (Rmult_lt_reg_l s); [assumption|]. lra. }

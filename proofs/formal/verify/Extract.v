@@ -5,6 +5,7 @@ From Exactfold Require Import Drawing Integers Verify.
 
 Extract Inlined Constant Nat.eqb => "Int.equal".
 Extract Inlined Constant Nat.eq_dec => "Int.equal".
+Extract Constant Pos.of_succ_nat => "(fun n -> Integer.of_int (n + 1))".
 Extract Inlined Constant Z.add => "Integer.add".
 Extract Inlined Constant Z.sub => "Integer.sub".
 Extract Inlined Constant Z.mul => "Integer.mul".
@@ -13,4 +14,4 @@ Extract Inlined Constant Z.ltb => "Integer.lt".
 Extract Inlined Constant Z.leb => "Integer.leq".
 Extract Inlined Constant Z.eqb => "Integer.equal".
 
-Extraction "verified.ml" verify_all verify_one passes measured.
+Extraction "verified.ml" verify_all verify_one passes measured is_bent.
