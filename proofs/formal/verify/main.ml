@@ -66,7 +66,7 @@ let block size folds number length data =
       { bits; center = Array.init size (fun k -> signed centers (((index * size) + k) * width) width);
         letters = fun k -> Some (Char.code (Bytes.get letters ((index * row) + (k / 8))) lsr (k mod 8) land 1 = 1) }
 
-let precisions = [ (56, 44); (120, 104); (248, 228); (504, 480); (1016, 984) ]
+let precisions = [ 56; 72; 96; 128; 256; 512; 1024 ]
 
 let all_branches header blocks claims =
   let evidence = entry "evidence" header in
@@ -87,43 +87,52 @@ let all_branches header blocks claims =
   let blocks = Array.of_list blocks in
   let slot = Array.make (Array.length sheet.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
-  let lights = Array.of_list (List.map (Proposing.light p slot) p.V.hubs) in
+  let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) and rough = Proposing.rough p in
   let unit = List.nth d.border 3 in
   let number e = let n = ref 0 in Array.iteri (fun k v -> if not (e v) then n := !n lor (1 lsl k)) inside; !n in
   let now = ref (-1, fun _ -> assert false) in
   let root n =
     if fst !now <> n / length then now := (n / length, block size folds (n / length) length blocks.(n / length));
     snd !now (n mod length) in
-  let heights root (bits, aim) =
+  let heights root bits =
     let h = Array.make (Array.length sheet.points) Z.zero in
     let shift = bits - root.bits in
     Array.iteri (fun k v -> let c = root.center.(k) in
       h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
     h.(unit) <- Z.shift_left Z.one bits;
     h in
-  (* what is proposed for a sign vector: tried with more and more digits *)
-  let proposed = ref (-1, [||], fun _ -> None) in
-  let propose e =
-    let n = number e in
-    let known, _, _ = !proposed in
-    if known <> n then begin
-      let root = root n in
-      if Array.length root.center <> size then refuse "root %d has another number of heights" n;
-      let rec refine = function
-        | [] -> [||]
-        | (bits, aim) :: more ->
-          let h = heights root (bits, aim) in
-          for _ = 1 to (if bits = 56 then 1 else 3 + (bits / 40)) do Proposing.step lights h bits aim done;
-          if V.passes p e (fun u -> h.(u)) root.letters then h else refine more in
-      let h = refine precisions in
-      if h = [||] then invalid "root %d was not verified" n;
-      if n land 65535 = 65535 || n land 65535 = 0 then (Printf.eprintf "\r%d of %d roots%!" (n + 1) (1 lsl size));
-      proposed := (n, h, root.letters)
-    end in
-  let top e = propose e; let _, h, _ = !proposed in h.(unit) in
-  let given e = propose e; let _, h, _ = !proposed in fun u -> h.(u) in
-  let asked e = propose e; let _, _, letters = !proposed in letters in
-  if not (V.verify_all d p top given asked) then invalid "the sheet or a root was not verified";
+  (* what is proposed for a sign vector: with more and more digits, until floating point, or if careful
+     the verified test itself, finds all letters decided *)
+  let verify careful =
+    let proposed = ref (-1, [||], fun _ -> None) in
+    let propose e =
+      let n = number e in
+      let known, _, _ = !proposed in
+      if known <> n then begin
+        let root = root n in
+        if Array.length root.center <> size then refuse "root %d has another number of heights" n;
+        let rec refine = function
+          | [] -> raise Exit
+          | bits :: more ->
+            let aim = bits - 14 in
+            let h = heights root bits in
+            if not (careful || more = [] || Proposing.clear rough h bits aim) then refine more
+            else begin
+              for _ = 0 to (bits - 40) / 40 do Proposing.step lights h bits aim done;
+              if careful && not (V.passes p e (fun u -> h.(u)) root.letters) then refine more else h
+            end in
+        let h = refine precisions in
+        if n land 65535 = 65535 || n land 65535 = 0 then (Printf.eprintf "\r%d of %d roots%!" (n + 1) (1 lsl size));
+        proposed := (n, h, root.letters)
+      end in
+    let top e = propose e; let _, h, _ = !proposed in h.(unit) in
+    let given e = propose e; let _, h, _ = !proposed in fun u -> h.(u) in
+    let asked e = propose e; let _, _, letters = !proposed in letters in
+    (try V.verify_all d p top given asked with Exit -> false), !proposed in
+  if not (fst (verify false)) then begin
+    let good, (last, _, _) = verify true in
+    if not good then invalid "the sheet or a root was not verified; the last one was root %d" last
+  end;
   if size > 15 then prerr_newline ();
   let count = string_of_int (1 lsl size) in
   sheet_claims sheet d claims;

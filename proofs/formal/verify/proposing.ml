@@ -154,10 +154,10 @@ let solve a b =
 (* A vertex with its forms in floating point: corners as places of the heights, -1 for the rim. *)
 type light = { hub : V.hub; place : int; corners : (int * int * int * int * float * float * float) array }
 
-let light (p : V.prepared) slot (b : V.hub) =
+let light slot (b : V.hub) =
   let corner (w : V.wedge_form) =
     (w.left, w.right, slot.(w.left), slot.(w.right), ratio w.mixed b.scale, ratio w.square b.scale, ratio w.square' b.scale) in
-  ignore p; { hub = b; place = slot.(b.at_vertex); corners = Array.of_list (List.map corner b.wedges) }
+  { hub = b; place = slot.(b.at_vertex); corners = Array.of_list (List.map corner b.wedges) }
 
 (* One step of Newton's method from heights h in units of 2^-bits towards curvatures 2^-aim. *)
 let step lights h bits aim =
@@ -180,3 +180,20 @@ let step lights h bits aim =
     let v = t.hub.V.at_vertex in
     let moved = ldexp b.(t.place) bits in
     if Float.is_finite moved then h.(v) <- Z.add h.(v) (Z.of_float (Float.round moved))) lights
+
+(* Folds in floating point, to guess whether heights with curvatures 2^-aim decide all letters: ends,
+   coefficients, and what the squared bend has to exceed. *)
+let rough (p : V.prepared) =
+  let float x = ratio x Z.one in
+  let total = List.fold_left (fun s (b : V.hub) -> Z.add s (Z.mul b.share b.scale)) Z.zero p.hubs in
+  let fold (f : V.fold_form) =
+    let ((i, j), l), m = f.ends in
+    (i, j, l, m, float f.along, float f.toward_l, float f.toward_m, ratio (Z.mul f.slack2 total) p.units) in
+  Array.of_list (List.map fold p.folds)
+
+let clear rough h bits aim =
+  let at v = ldexp (Z.to_float h.(v)) (-bits) in
+  Array.for_all (fun (i, j, l, m, a, b, c, slack) ->
+    let x = at i in
+    let bend = a *. (at j -. x) +. b *. (at l -. x) +. c *. (at m -. x) in
+    bend *. bend > 4. *. ldexp slack (-aim)) rough
