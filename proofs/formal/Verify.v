@@ -105,13 +105,14 @@ Qed.
 Lemma bend_scaled S i j l m s h : bend S i j l m (scaled_up s h) = s * bend S i j l m h.
 Proof. unfold bend, tilt, gradient, scaled_up, move, zero, dot, sub, J, Rdiv. cbn [fst snd]. ring. Qed.
 
-(** Exactly 2^n branches, complex ones included, all real, one for each sign vector, with the letters
-    that were asked for. *)
+(** Exactly 2^n branches, complex ones included, all real and simple, one for each sign vector, with the
+    letters that were asked for. *)
 Theorem all_verified : verify_all = true ->
   exists (ok : check d = true) (b1 b2 b3 b4 : nat), border d = [b1; b2; b3; b4] /\
   let S := sheet_of d ok in exists l : list vec,
     length l = (2 ^ length (inside d))%nat /\ NoDup l /\
     (forall h, In h l <-> representative S b4 h) /\
+    (forall h, In h l -> nonsingular S h) /\
     (forall e, exists! h, In h l /\ has_signs S e h) /\
     (forall z, complex_solution S z -> complex_affine S z \/
        exists h, In h l /\ (exists s, on_branch S z s h) /\
@@ -161,7 +162,9 @@ Proof.
   { change (cross (sub (at_R d b2) (at_R d b1)) (sub (at_R d b3) (at_R d b1)) <> 0). rewrite cross_IZR.
     intros E. apply Cor. now apply eq_IZR. }
   { exact NF. }
-  exists l. split; [exact Len|]. split; [exact D|]. split; [exact Rep|]. split; [exact Signs|].
+  exists l. split; [exact Len|]. split; [exact D|]. split; [exact Rep|]. split.
+  { intros h Hh. apply Rep in Hh. apply simple_iff_no_flat_star; [now destruct Hh|now apply NF]. }
+  split; [exact Signs|].
   split; [exact Complete|].
   intros e h f i j l' m valley He Rh Sg Hf En As. destruct (Near h Rh e He) as (s & _ & _ & Lt).
   - intros v Hv. destruct Rh as (_ & Hs). rewrite (Hs v Hv). specialize (Sg v Hv). split; lra.

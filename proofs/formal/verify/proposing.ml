@@ -44,13 +44,26 @@ let pinned sheet = function
     choose 1
   | cycle -> cycle
 
+(* A boundary with a reflex corner is refused by name; the verified program refuses it, too. *)
+let refuse_reflex sheet rim fans =
+  List.iter (fun v ->
+    let rec ends first = function [ last ] -> (first, last) | _ :: l -> ends first l | [] -> (first, first) in
+    let first, last = ends (List.hd fans.(v)) fans.(v) in
+    let p = sheet.points.(v) in
+    if Z.lt (zturn (minus sheet.points.(first) p) (minus sheet.points.(last) p)) Z.zero then
+      refuse "the corner at vertex %d is reflex: the formal proof is about convex sheets" v) rim
+
 let drawing sheet : V.drawing =
+  List.iter (fun (a, b, c) -> let at v = sheet.points.(v) in
+    if Z.leq (zturn (minus (at b) (at a)) (minus (at c) (at a))) Z.zero then
+      refuse "the face %d, %d, %d does not run counter-clockwise" a b c) sheet.triangles;
   let next = next_of sheet in
   let fans = Array.mapi (fun v steps -> fan v steps) next in
   let all = List.init (Array.length fans) Fun.id in
   let inside, rim = List.partition (fun v -> snd fans.(v)) all in
   if rim = [] then refuse "the sheet has no boundary";
   let fans = Array.map fst fans in
+  refuse_reflex sheet rim fans;
   let cycle = border (List.hd rim) (List.hd rim) fans in
   (* the greatest number first, so that the sign vectors come in the order of the roots *)
   { points = Array.to_list sheet.points; inside = List.rev inside; border = pinned sheet cycle;
@@ -66,7 +79,6 @@ let hub sheet here v fan =
   let corner (a, b) =
     let x = spoke sheet v a and y = spoke sheet v b in
     let c = zturn x y and s = zdot x y in
-    if Z.leq c Z.zero then refuse "the face at vertices %d, %d, %d does not run counter-clockwise" v a b;
     (a, b, c, s, Z.mul (Z.mul two c) (zdot x x), Z.mul (Z.mul two c) (zdot y y)) in
   let corners = List.map corner (steps fan) in
   let needed scale (_, _, c, s, m, n) =

@@ -59,9 +59,14 @@ let entry key = function
     | _ -> refuse "\"%s\" is missing, or given twice" key)
   | _ -> refuse "an object with \"%s\" is expected" key
 
+let only names = function
+  | Entries pairs ->
+    let wanted = String.split_on_char ' ' names in
+    List.iter (fun (k, _) -> if not (List.mem k wanted) then refuse "the key \"%s\" is not known" k) pairs
+  | _ -> ()
+
 let items what = function Items l -> l | _ -> refuse "%s is no list" what
 let string what = function Text t -> t | _ -> refuse "%s is no text" what
-
 let whole what = function
   | Text t | Number t -> (try Z.of_string t with Invalid_argument _ -> refuse "%s is no whole number" what)
   | _ -> refuse "%s is no whole number" what
@@ -85,6 +90,7 @@ let triple what = function
   | _ -> refuse "%s has not three vertices" what
 
 let sheet pattern =
+  only "vertices triangles" pattern;
   let pair j = match items "a vertex" j with
     | [ x; y ] -> (rational "a coordinate" x, rational "a coordinate" y)
     | _ -> refuse "a vertex has not two coordinates" in
