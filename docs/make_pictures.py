@@ -7,6 +7,7 @@ from pathlib import Path
 from exactfold import PROVED, branch, count, decompose, draw, flat, follow
 from exactfold.app.pictures.crease_drawing import CreaseDrawing
 from exactfold.app.pictures.crease_lines import crease_lines
+from exactfold.app.pictures.directions_plot import directions_plot
 from exactfold.app.pictures.flat_conflicts import conflict_picture
 from exactfold.app.pictures.flat_states import state_picture
 from exactfold.app.pictures.folded import Amount, folded
@@ -39,6 +40,8 @@ def pictures() -> dict[str, str]:
         motion = follow_panels(decompose(pattern), way=way)
         panels[f"{name}.svg"] = motion_stills(motion, 5, f"{pattern}, way {way}")
     others = {"folding.svg": folding(), "rim.svg": rim(), "rim-path.svg": rim_path()}
+    turning = directions_plot(count("waterbomb-cell", direction="all"), "waterbomb-cell", 2)
+    others["waterbomb-directions.svg"] = turning
     return branches | panels | drawings() | folded_flat() | others
 
 

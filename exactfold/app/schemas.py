@@ -49,6 +49,18 @@ DOCUMENTS: Final = {
         "exactfold count CELL --direction X,Y --json",
         "branches.periodic.result:PeriodicDocument",
     ),
+    "directions": (
+        "exactfold count CELL --direction all --json",
+        "branches.periodic.directions_result:DirectionsDocument",
+    ),
+    "panel-cell": (
+        "exactfold count CELL --json, of rigid panels",
+        "panels.periodic.result:PanelCellDocument",
+    ),
+    "periodic-match": (
+        "exactfold match CELL --json",
+        "panels.periodic.result:PeriodicMatchDocument",
+    ),
     "branch": (
         "exactfold branch --json, and each line of it",
         "branches.values.branch:BranchDocument",

@@ -1,6 +1,10 @@
 from exactfold.panels.decomposition import decompose as decompose
 from exactfold.panels.modes.elementary import Support as Support
 from exactfold.panels.modes.extension import Extension as Extension
+from exactfold.panels.periodic.modes import count_panel_cell as count_panel_cell
+from exactfold.panels.periodic.result import PanelCell as PanelCell
+from exactfold.panels.periodic.result import PeriodicMotion as PeriodicMotion
+from exactfold.panels.periodic.result import PeriodicPart as PeriodicPart
 from exactfold.panels.result import Decomposition as Decomposition
 from exactfold.panels.result import Mode as Mode
 from exactfold.panels.spaces.subspaces import Leaf as Leaf

@@ -142,7 +142,7 @@ def _complete(
     zeros: list[Sequence[Balls | None]] = []
     for leaf in leaves:
         clock.check()
-        number, motions = _checked_components(moving, leaf, leaves)
+        number, motions = checked_components(moving, leaf, leaves)
         together = max(together, number)
         zeros += motions
         spaces += [leaf] * len(motions)
@@ -183,7 +183,7 @@ def _complete(
     )
 
 
-def _checked_components(
+def checked_components(
     moving: Mapping[int, Star], leaf: Leaf, leaves: Sequence[Leaf]
 ) -> tuple[int, list[tuple[Balls | None, ...]]]:
     """The largest number of forms that remain together on an independent part of a leaf.
@@ -325,7 +325,7 @@ def _extends(
     their conditions are independent at one of their points (`truly_folds`); for cones this is a
     point at which their forms vanish. A part that is a mode extends if the mode does. Other folds
     are held flat, so this can prove that a space extends but never that it does not: a true motion
-    might use those folds at a higher order. `zeros` are those of `_checked_components`, where they
+    might use those folds at a higher order. `zeros` are those of `checked_components`, where they
     are known.
     """
     parts = independent_parts(_entries(leaf), leaf.size, moving)

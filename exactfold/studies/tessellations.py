@@ -2,6 +2,8 @@
 
 A row is one random cell, with some edges flipped. Its counts for three directions are compared: the
 pleats and the sign of b of each pair of opposite sign vectors do not depend on the direction.
+Without pleats, all crossings over the circle of directions are found, and how the branches are
+permuted after a half turn.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from typing import Any, Final
 
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.counting import count_periodic
+from exactfold.branches.periodic.directions import count_directions
 from exactfold.pattern.periodic.random_cells import random_cell
 from exactfold.studies.running.study import Recipe, Row, Study, StudyFigure, StudyTable
 from exactfold.studies.running.tallies import tallied
@@ -35,7 +38,10 @@ def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
 def row(recipe: Recipe) -> dict[str, Any]:
     """What is proved of one cell, for all `DIRECTIONS` together.
 
-    `same` says whether no pair of opposite sign vectors has b of both signs.
+    `same` says whether no pair of opposite sign vectors has b of both signs. `whole` is the status
+    of the answer for all directions, "pleats" if there are any; then the numbers of `crossings`, of
+    the `stars` that go flat at one of them at most, of the branches that come back as others
+    (`moved`), and of the half turns after which all are back (`turns`) are None.
     """
     cell = random_cell(
         int(recipe["interior"]),
@@ -49,14 +55,23 @@ def row(recipe: Recipe) -> dict[str, Any]:
         for branch in result:
             sides.setdefault(branch.vertex_signs, set()).add(branch.b)
     proved = all(result.status is PROVED for result in results)
+    pleats = len(results[0].pleats)
+    whole = None if pleats else count_directions(cell)
+    order = None if whole is None else whole.permutation
+    crossings = () if whole is None else whole.crossings
     return {
         "status": str(PROVED if proved else UNDECIDED),
         "branches": sum(len(result) for result in results),
         "down": sum(branch.b < 0 for result in results for branch in result),
         "flat": sum(branch.multiplicity > 1 for result in results for branch in result),
-        "pleats": len(results[0].pleats),
+        "pleats": pleats,
         "families": sum(len(result.families) for result in results),
         "same": all(len(side) == 1 for side in sides.values()),
+        "whole": "pleats" if whole is None else str(whole.status),
+        "crossings": None if order is None else len(crossings),
+        "stars": None if order is None else max((len(c.vertices) for c in crossings), default=0),
+        "moved": None if order is None else sum(k != at for k, at in enumerate(order)),
+        "turns": None if whole is None else whole.turns,
     }
 
 
@@ -72,6 +87,12 @@ class _Tally:
     pleats: int = 0
     families: int = 0
     same: int = 0
+    whole: int = 0
+    crossings: int = 0
+    meeting: int = 0
+    stars: int = 0
+    permuted: int = 0
+    turns: int = 1
 
     def add(self, row: Row) -> None:
         """Adds a row."""
@@ -83,6 +104,13 @@ class _Tally:
         self.pleats += row["pleats"] > 0
         self.families += row["families"] > 0
         self.same += row["same"]
+        if row["whole"] == str(PROVED):
+            self.whole += 1
+            self.crossings += row["crossings"]
+            self.meeting += row["crossings"] > 0
+            self.stars = max(self.stars, row["stars"])
+            self.permuted += row["moved"] > 0
+            self.turns = max(self.turns, row["turns"])
 
 
 def tables(rows: Iterable[Row]) -> list[StudyTable]:
@@ -90,6 +118,10 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
     tallies = tallied(rows, _Tally, lambda row: row["interior"])
     lines = tuple(
         (v, t.cells, t.proved, t.branches, t.down, t.flat, t.pleats, t.families, t.same)
+        for v, t in tallies.items()
+    )
+    over = tuple(
+        (v, t.cells, t.pleats, t.whole, t.meeting, t.crossings, t.stars, t.permuted, t.turns)
         for v, t in tallies.items()
     )
     return [
@@ -103,7 +135,30 @@ def tables(rows: Iterable[Row]) -> list[StudyTable]:
                 "flat: those with flat vertices; pleats and families: cells that have any; same b: "
                 "cells on which the sign of b of each sign vector is the same for all directions.",
             ),
-        )
+        ),
+        StudyTable(
+            "directions",
+            "The same cells over all directions",
+            (
+                "V",
+                "cells",
+                "pleats",
+                "proved",
+                "meeting",
+                "crossings",
+                "stars",
+                "permuted",
+                "half turns",
+            ),
+            over,
+            (
+                "pleats: cells that have any, which are not followed; proved: all crossings are "
+                "known and the permutation is proved; meeting: cells with crossings; stars: the "
+                "most vertices that go flat at one crossing; permuted: cells on which some branch "
+                "comes back as another one after a half turn; half turns: the most after which all "
+                "are back.",
+            ),
+        ),
     ]
 
 
@@ -114,8 +169,8 @@ def figures(rows: Iterable[Row]) -> Sequence[StudyFigure]:
 
 STUDY: Final = Study(
     "tessellations",
-    "Random tessellations: branches, pleats, and the side to which they roll up",
-    1,
+    "Random tessellations: branches, pleats, crossings, and the side to which they roll up",
+    2,
     dict.fromkeys(range(1, 7), 1700),
     {7: 100},
     recipes,

@@ -163,7 +163,10 @@ def pair_table(lines: Lines) -> list[list[str]]:
         rows.append(
             [
                 old["command"] + other,
-                *map(number, times),
+                *(
+                    ("> " if None in x["code"] else "") + number(median(x["cpu"]))
+                    for x in (old, new)
+                ),
                 f"{times[1] / times[0]:.2f}",
                 f"{new['memory']:.0f}",
             ]
@@ -274,7 +277,9 @@ _PAIRS = """
 ## Against an earlier commit
 
 Processor seconds of whole commands, start included, in turns with those of an earlier commit;
-medians of the rounds. `python tests/benchmarks/pairs.py COMMIT --markdown` prints this table alone.
+medians of the rounds. `python tests/benchmarks/pairs.py COMMIT --markdown` prints this table alone;
+`--keep FILE.jsonl` remembers the times by commit, `--from FILE.jsonl` prints them again, and
+`--long` takes commands that people wait for. `>`: stopped.
 
 {table}
 """

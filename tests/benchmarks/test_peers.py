@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import peers
 import pytest
+from pairs import remembered
 from peer_process import run
 from peer_programs import read_macaulay2, read_msolve, read_phcpack
-from peer_report import main_table
+from peer_report import main_table, pair_table
 from peer_tasks import TASKS, backward_errors, judged
 from plain_splu import plain_branch
 
@@ -51,6 +52,30 @@ def test_the_smallest_size_is_complete(
     for shape in ([], ["--markdown"]):
         peers.main(["--from", str(tmp_path / "results.json"), *shape])
         assert "exactfold, certificate" in capsys.readouterr().out
+
+
+def test_measurements_are_remembered_by_commit(tmp_path: Path) -> None:
+    def line(command: str, commit: str, *cpu: float, code: int | None = 0) -> str:
+        words = {"command": command, "commit": commit, "cpu": cpu, "memory": 9.0, "code": [code]}
+        return json.dumps(words)
+
+    kept = tmp_path / "kept.jsonl"
+    measured = [
+        *(line("count", "aaaa", 8.0), line("count", "bbbb", 8.0)),
+        *(line("view", "aaaa", 9.0), line("view", "bbbb", 3.0)),
+        *(line("count", "aaaa", 4.0), line("count", "cccc", 1.0, 3.0, 2.0)),
+        *(line("count", "dddd", 1.0), line("count", "cccc", 5.0)),
+        *(line("motions", "aaaa", 90.0, code=None), line("motions", "cccc", 30.0)),
+        *(line("count", "aaaa", 6.0), line("count", "cccc", 1.0, 3.0, 2.0)),
+    ]
+    kept.write_text("\n".join(measured) + "\n")
+    assert pair_table(remembered("aaaa1234", kept)) == [
+        ["command", "aaaa", "cccc", "ratio", "MB"],
+        ["count", "6.0", "2.0", "0.33", "9"],
+        ["motions (exit codes [None], [0])", "> 90", "30", "0.33", "9"],
+    ]
+    with pytest.raises(SystemExit, match="no measurement against bbbb"):
+        remembered("bbbb", kept)
 
 
 def test_every_way_finds_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,6 +59,8 @@ BENT = {  # the path 0-4-2 is straight but for the last digits
 }
 CELL = exactfold.pattern.read_cell("yoshimura-cell")
 ROLLED = exactfold.branches.count_periodic(CELL, (1, 2))
+TURNED = exactfold.branches.count_directions("waterbomb-cell")
+PANEL_CELL = exactfold.panels.count_panel_cell("miura-cell")
 LINE = exactfold.branches.AlgebraicLine((-2, 0, 1), (Fraction(1), Fraction(2)), ((Fraction(0),),))
 OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_connected_components(
@@ -150,6 +152,13 @@ VALUES = {
     "cell": CELL,
     "periodic count": ROLLED,
     "periodic branch": ROLLED[0],
+    "all directions": TURNED,
+    "tessellation of panels": PANEL_CELL,
+    "periodic motion": PANEL_CELL[0],
+    "part of a periodic motion": PANEL_CELL[0].parts[0],
+    "crossing of branches": TURNED.crossings[0],
+    "exact direction": TURNED.crossings[0].direction,
+    "rolling branch": TURNED.branches[0],
     "space of heights": ROLLED.pleats[0],
     "algebraic line": LINE,
     "pattern with long coordinates": exactfold.CreasePattern(

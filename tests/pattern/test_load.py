@@ -234,6 +234,8 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "design.BoundaryMatch",
         "branches.ShapeCount",
         "branches.PeriodicCount",
+        "branches.DirectionsCount",
+        "panels.PanelCell",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",

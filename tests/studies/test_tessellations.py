@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from exactfold.branches import count_periodic
+from exactfold.branches import count_directions, count_periodic
 from exactfold.pattern import random_cell
 from exactfold.studies import tessellations
 from exactfold.studies.running.registry import study_named
@@ -19,7 +19,11 @@ def test_a_row_is_about_its_cell() -> None:
     assert row["branches"] == sum(len(result) for result in results)
     assert row["pleats"] == len(results[0].pleats)
     assert row["same"]
-    (table,) = study.tables([{**recipe, **row}, {**recipe, **row, "status": "undecided"}])
-    (line,) = table.rows
-    assert line[:4] == (3, 2, 1, 2 * row["branches"])
+    whole = count_directions(cell)
+    assert (row["whole"], row["crossings"]) == ("proved", len(whole.crossings))
+    assert row["turns"] == whole.turns
+    undecided = {"status": "undecided", "whole": "pleats", "crossings": None, "turns": None}
+    cells, directions = study.tables([{**recipe, **row}, {**recipe, **row, **undecided}])
+    assert cells.rows[0][:4] == (3, 2, 1, 2 * row["branches"])
+    assert directions.rows[0][3:6] == (1, 1, row["crossings"])
     assert study.figures([]) == []

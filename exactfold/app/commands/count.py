@@ -8,28 +8,26 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from exactfold._support.clock import Clock
-from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app import report
+from exactfold.app.commands.cells import asked_cell
 from exactfold.app.commands.stream import Streaming, advice
 from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.given import Given
+from exactfold.app.shell.parameters import ALL
 from exactfold.app.shell.patterns import located, read, read_any
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say
-from exactfold.app.verbs.counting import counted_with_letters, opened_cell
+from exactfold.app.verbs.counting import counted_with_letters
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, SeveralSheetsError, UsageError
-from exactfold.exact.numbers import format_rational
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.drawing.bounds import read_bytes
 from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, is_cell_file
 
 if TYPE_CHECKING:  # counting branches does not need it
     from exactfold.branches.counting.stream import StreamedCount
     from exactfold.panels.result import Decomposition
-    from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 
 
 class Asked(CountOptions):
@@ -52,10 +50,10 @@ class Asked(CountOptions):
         """
         apart(self.certificate, self.pattern, self.stream)
         apart(self._components, self.pattern, self.stream)
-        if self.direction is not None or is_cell_file(located(self.pattern)):
+        if self.direction is not None or self.periodic or is_cell_file(located(self.pattern)):
             return self._periodic()
         if self.cell is not None:
-            raise UsageError("--cell goes with --direction X,Y: count the ways of a periodic sheet")
+            raise UsageError("--cell goes with --direction or --periodic")
         if self.given:
             return self._shapes()
         streamed = None if self.stream is None else self._streamed(self.stream)
@@ -156,15 +154,10 @@ class Asked(CountOptions):
         return EXIT[result.status]
 
     def _periodic(self) -> int:
-        """Count the branches of a periodic sheet for one direction."""
+        """Count the branches of a periodic sheet for one direction, or for all."""
         from exactfold.branches.periodic.certificate import periodic_certificate
         from exactfold.branches.periodic.counting import count_periodic
 
-        if self.direction is None:
-            raise UsageError(
-                f"{self.pattern} is the cell of a periodic sheet: give the direction in which it "
-                "rolls up, as in --direction 3,4"
-            )
         for option, value in (
             ("--stream", self.stream),
             ("--method", None if self.method == "auto" else self.method),
@@ -172,9 +165,15 @@ class Asked(CountOptions):
             ("--boundary-heights", self.boundary_heights),
         ):
             if value is not None:
-                raise UsageError(f"{option} does not go with --direction")
+                raise UsageError(f"{option} does not go with periodic sheets")
+        if self.direction is None:
+            return self._panel_cell()
+        if self.periodic:
+            raise UsageError("give --direction, or --periodic for rigid panels")
+        if self.direction == ALL:
+            return self._all_directions()
         with Bar("reading") as bar:
-            cell = self._cell()
+            cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             result = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
         written = None
         if self.certificate is not None:
@@ -189,35 +188,36 @@ class Asked(CountOptions):
             report.show(report.periodic_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
-    def _cell(self) -> PeriodicPattern:
-        """The cell in the file; or the one that a drawing shows, which a line describes."""
-        from exactfold.pattern.periodic.cell_files import parse_cell_bytes
-        from exactfold.pattern.periodic.drawn import other_lattices, repeated
+    def _panel_cell(self) -> int:
+        """Count the motions of a tessellation of rigid panels."""
+        from exactfold.panels.periodic.modes import count_panel_cell
 
-        path = located(self.pattern)
-        if is_cell_file(path):
-            if self.cell is not None:
-                raise UsageError(f"{self.pattern} is a cell: leave out --cell")
-            return parse_cell_bytes(read_bytes(path), name_of(self.pattern))
-        opened = read_any(self.pattern, self.reading, verbose=self.verbose, doubted=False)
-        cell = opened_cell(opened, self.cell or (1, 1))
-        first, second = (", ".join(map(format_rational, vector)) for vector in cell.lattice)
-        say(
-            f"taken for a periodic sheet with {counted(cell.V, 'vertex')} in a cell and the "
-            f"translations ({first}) and ({second}); the border of the drawing counts as creases"
-        )
-        if others := other_lattices(opened.sheet):
-            texts = [f"({', '.join(map(format_rational, vector))})" for vector in others[0]]
-            say(
-                f"its border matches itself in {counted(len(others), 'other way')}, too, such as "
-                f"with {' and '.join(texts)}: a cell file says which is meant"
-            )
-        if self.cell is None and (most := repeated(opened.sheet)) != (1, 1):
-            say(
-                f"it shows {most[0]} x {most[1]} equal cells: --cell {most[0]},{most[1]} takes one "
-                "of them"
-            )
-        return cell
+        if self.certificate is not None:
+            raise UsageError("motions of a tessellation of rigid panels have no certificate")
+        with Bar("reading") as bar:
+            cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
+            bar("solving")
+            result = count_panel_cell(cell, limit=self.limit)
+        if self.as_json:
+            print(json.dumps(result.to_dict(name_of(self.pattern))))
+        else:
+            report.show(report.panel_cell_report(result, everything=self.everything))
+        return EXIT[result.status]
+
+    def _all_directions(self) -> int:
+        """The branches of a periodic sheet over all directions."""
+        from exactfold.branches.periodic.directions import count_directions
+
+        if self.certificate is not None:
+            raise UsageError("--direction all has no certificate; that of one direction has")
+        with Bar("reading") as bar:
+            cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
+            result = count_directions(cell, limit=self.limit, progress=bar)
+        if self.as_json:
+            print(json.dumps(result.to_dict(name_of(self.pattern))))
+        else:
+            report.show(report.directions_report(result, everything=self.everything))
+        return EXIT[result.status]
 
     def _streamed(self, file: Path) -> StreamedCount:
         if self.method != "auto":

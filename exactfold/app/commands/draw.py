@@ -7,8 +7,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exactfold._support.clock import LIMIT
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
+from exactfold.app.commands.cells import asked_cell
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.pictures import DrawOptions
 from exactfold.app.pictures.crease_drawing import pattern_picture
@@ -32,10 +34,11 @@ from exactfold.errors import (
     PatternError,
     SeveralSheetsError,
     UndecidedBranchError,
+    UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.drawing import Drawing
-from exactfold.pattern.opening import Opened, has_branches
+from exactfold.pattern.opening import Opened, has_branches, is_cell_file
 
 if TYPE_CHECKING:
     from exactfold.panels.result import Decomposition
@@ -90,7 +93,10 @@ class Wanted(DrawOptions):
             return None if str(self.output) == "-" else self.output
         if not on_a_terminal():
             return None
-        kind = "ways" if self.everything else "drawn" if self._is_plain else "way"
+        if self.direction:
+            kind = "directions"
+        else:
+            kind = "ways" if self.everything else "drawn" if self._is_plain else "way"
         return Path(f"{self._title or 'pattern'}-{kind}.svg")
 
     @property
@@ -108,6 +114,10 @@ class Wanted(DrawOptions):
 
     def _drawn(self, bar: Bar) -> tuple[str, Verdict, str]:
         """The picture, the verdict on the way that it shows, and what it shows in words."""
+        if self.direction is not None:
+            return self._directions(bar)
+        if is_cell_file(located(self.file)):
+            raise UsageError(f"{self.file} is the cell of a periodic sheet: give --direction all")
         try:
             opened = read_any(self.file, self.reading, verbose=self.verbose)
         except (FoldError, PatternError, SeveralSheetsError) as error:
@@ -125,6 +135,19 @@ class Wanted(DrawOptions):
             return picture, PROVED, what
         text, status = self._way(opened, bar)
         return text, verdict(opened, status), what
+
+    def _directions(self, bar: Bar) -> tuple[str, Verdict, str]:
+        """The branches of a periodic sheet over the circle of directions."""
+        from exactfold.app.pictures.directions_plot import FIRST, directions_plot
+        from exactfold.branches.periodic.directions import count_directions
+
+        cell = asked_cell(self.file, self.reading, self.cell, verbose=self.verbose)
+        bar("solving")
+        result = count_directions(cell, limit=LIMIT, progress=bar)
+        if result.status is not PROVED:
+            say(f"the crossings are not all known: {result.reason}")
+        text = directions_plot(result, self._title, self.most or FIRST, bar)
+        return text, result.status, f"a periodic sheet, {counted(cell.V, 'vertex')} in the cell"
 
     def _way(self, opened: Opened, bar: Bar) -> tuple[str, Verdict]:
         """The picture of the ways that were named, and the verdict on them."""

@@ -9,9 +9,10 @@ from dataclasses import replace
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED
+from exactfold.app.commands.cells import asked_cell
 from exactfold.app.options.branches import MatchOptions
 from exactfold.app.options.choosing import given_letters
-from exactfold.app.shell.patterns import read_any
+from exactfold.app.shell.patterns import located, read_any
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.chosen import DRAWN
 from exactfold.branches.counting.doubted import nearly_among
@@ -29,8 +30,10 @@ from exactfold.errors import (
     NotCountedError,
     UsageError,
 )
+from exactfold.panels.periodic.result import PeriodicMatchDocument
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.opening import Opened, triangles
+from exactfold.pattern.drawing.bounds import read_text
+from exactfold.pattern.opening import Opened, is_cell_file, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
 
 _RIMS = 16
@@ -49,6 +52,10 @@ class Asked(MatchOptions):
         the sheet does not start to fold with them. Raises the errors of `read_any`, `triangles` and
         `match`, and `UsageError` if the letters do not fit the folds or the file has none.
         """
+        if is_cell_file(located(self.file)):
+            return self._periodic()
+        if self.direction is not None:
+            raise UsageError("--direction goes with the cell of a periodic sheet")
         begin = time.perf_counter()
         clock = Clock(self.limit)
         nearest = None
@@ -93,6 +100,47 @@ class Asked(MatchOptions):
             report.show(report.match_report(matched, nearest, seconds, everything=self.everything))
         refuted = matched.status is PROVED and not matched.matches
         return EXIT[REFUTED if refuted else matched.status]
+
+    def _periodic(self) -> int:
+        """Whether a periodic sheet starts to fold with the letters."""
+        from exactfold.branches.periodic.counting import count_periodic
+        from exactfold.panels.periodic.modes import count_panel_cell
+
+        if self.letters in (None, DRAWN):
+            raise UsageError("a cell has no letters: give them with --letters")
+        if self.certificate is not None:
+            raise UsageError("the letters of a periodic sheet have no certificate")
+        text = (self.letters or "").removeprefix("@")
+        letters = read_text(text) if self.letters != text else text
+        letters = "".join(letters.split())
+        with Bar("reading") as bar:
+            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            bar("solving")
+            if self.direction is None:
+                panels = count_panel_cell(cell, limit=self.limit)
+                folds, direction = panels.folds, None
+                answer, ways = panels.with_letters(letters)
+            else:
+                rolled = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
+                folds, direction = cell.edges, list(rolled.direction)
+                answer, ways = rolled.with_letters(letters)
+        if self.as_json:
+            document: PeriodicMatchDocument = {
+                "format": "exactfold periodic match",
+                "version": 1,
+                "name": name_of(self.file),
+                "letters": letters,
+                "folds": [list(fold) for fold in folds],
+                "direction": direction,
+                "starts": str(answer),
+                "ways": list(ways),
+            }
+            print(json.dumps(document))
+        else:
+            from exactfold.app import report
+
+            report.show(report.letters_report(answer, ways, letters))
+        return EXIT[answer]
 
     def _write(self, answer: Match | BoundaryMatch | PanelMatch, bar: Bar) -> None:
         if self.certificate is None:

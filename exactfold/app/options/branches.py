@@ -1,6 +1,7 @@
 """The options of the commands for single branches, and checks of which go together."""
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,7 @@ from exactfold.app.shell.parameters import (
     Pattern,
     PrescribedAngles,
     degrees,
+    direction_vector,
     flag,
     number,
     program_name,
@@ -76,6 +78,15 @@ class MatchOptions(ReadingOptions):
             "Compare the branches of at most N sign vectors. Default: 4096; 16 if boundary heights "
             "have to be found.",
             least=1,
+        ),
+    ] = None
+    direction: Annotated[
+        tuple[Fraction, Fraction] | None,
+        typer.Option(
+            parser=direction_vector,
+            metavar="X,Y",
+            help="For the cell of a periodic sheet: compare the branches of `count --direction`. "
+            "Without it, the motions of rigid panels.",
         ),
     ] = None
     tries: Annotated[

@@ -19,7 +19,7 @@ from exactfold.app.shell.parameters import (
     Resume,
     cell_numbers,
     complete_method,
-    direction_vector,
+    direction_or_all,
     distance,
     flag,
     method_name,
@@ -89,21 +89,30 @@ class CountOptions(ReadingOptions):
         ),
     ] = None
     direction: Annotated[
-        tuple[Fraction, Fraction] | None,
+        tuple[Fraction, Fraction] | str | None,
         typer.Option(
-            parser=direction_vector,
-            metavar="X,Y",
+            parser=direction_or_all,
+            metavar="X,Y|all",
             help="For a periodic sheet: the vector at right angles to the axis of the cylinder on "
-            "which the sheet rolls up, as in 3,4. A drawing is taken for the cell of one if its "
-            "opposite sides match.",
+            "which the sheet rolls up, as in 3,4; or all of them together. A drawing is taken for "
+            "the cell of one if its opposite sides match.",
         ),
     ] = None
+    periodic: Annotated[
+        bool,
+        flag(
+            "--periodic",
+            text="Take a drawing for the cell of a periodic sheet of rigid panels, and count the "
+            "motions that repeat in each cell.",
+        ),
+    ] = False
     cell: Annotated[
         tuple[int, int] | None,
         typer.Option(
             parser=cell_numbers,
             metavar="I,J",
-            help="For a drawing with --direction: it shows I times J cells. Default: 1,1.",
+            help="For a drawing with --direction or --periodic: it shows I times J cells. "
+            "Default: 1,1.",
         ),
     ] = None
     curvature: Curvature = None
@@ -135,11 +144,11 @@ class CountOptions(ReadingOptions):
             self.direction,
             self.cell,
         )
-        if self.resume or any(value is not None for value in single):
+        if self.resume or self.periodic or any(value is not None for value in single):
             raise UsageError(
-                "--certificate, --stream, --resume, --workers, --direction, --cell, --curvature "
-                "and --boundary-heights go with one pattern, without --jsonl and without "
-                "--sheet all"
+                "--certificate, --stream, --resume, --workers, --direction, --periodic, --cell, "
+                "--curvature and --boundary-heights go with one pattern, without --jsonl and "
+                "without --sheet all"
             )
 
 

@@ -9,8 +9,10 @@ import typer
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
+    ALL,
     BoundaryHeights,
     Side,
+    cell_numbers,
     duration,
     flag,
     number,
@@ -43,6 +45,22 @@ class DrawOptions(WayOptions):
     ] = None
     side: Side = None
     boundary_heights: BoundaryHeights = None
+    direction: Annotated[
+        str | None,
+        typer.Option(
+            metavar="all",
+            help="For a periodic sheet: draw b and the fold angles of its branches by direction. "
+            "--most N draws the folds of the first N; default: 8.",
+        ),
+    ] = None
+    cell: Annotated[
+        tuple[int, int] | None,
+        typer.Option(
+            parser=cell_numbers,
+            metavar="I,J",
+            help="For a drawing with --direction: it shows I times J cells. Default: 1,1.",
+        ),
+    ] = None
     output: Annotated[
         Path | None,
         typer.Option(
@@ -58,8 +76,15 @@ class DrawOptions(WayOptions):
         super().__post_init__()
         if self.is_named and self.everything:
             raise UsageError(f"give {ONE_OF}, or --all")
-        if self.most is not None and not self.everything:
-            raise UsageError("--most goes with --all")
+        if self.direction is not None:
+            if self.direction != ALL:
+                raise UsageError("draw takes --direction all; `count` takes single directions")
+            if self.is_named or self.everything:
+                raise UsageError(f"--direction does not go with --all or {ONE_OF}")
+        elif self.cell is not None:
+            raise UsageError("--cell goes with --direction all")
+        if self.most is not None and not self.everything and self.direction is None:
+            raise UsageError("--most goes with --all or --direction all")
         if self.folded is not None and not self.is_named:
             raise UsageError(f"--folded needs a way: give {ONE_OF}")
         if self.side is not None and self.folded is None:

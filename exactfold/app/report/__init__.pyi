@@ -1,5 +1,6 @@
 from exactfold.app.pictures.animation import motion_animation as motion_animation
 from exactfold.app.pictures.crease_drawing import pattern_picture as pattern_picture
+from exactfold.app.pictures.directions_plot import directions_plot as directions_plot
 from exactfold.app.pictures.drawn_ways import branch_way as branch_way
 from exactfold.app.pictures.drawn_ways import panel_way as panel_way
 from exactfold.app.pictures.drawn_ways import ways_of as ways_of
@@ -29,6 +30,9 @@ from exactfold.app.report.match import match_report as match_report
 from exactfold.app.report.match import panel_match_report as panel_match_report
 from exactfold.app.report.motion import motion_report as motion_report
 from exactfold.app.report.panels import panels_report as panels_report
+from exactfold.app.report.periodic import directions_report as directions_report
+from exactfold.app.report.periodic import letters_report as letters_report
+from exactfold.app.report.periodic import panel_cell_report as panel_cell_report
 from exactfold.app.report.periodic import periodic_report as periodic_report
 from exactfold.app.report.study import row_report as row_report
 from exactfold.app.report.study import studies_report as studies_report

@@ -165,6 +165,15 @@ def direction_vector(text: object) -> tuple[Fraction, Fraction]:
     return x, y
 
 
+ALL: Final = "all"
+"""The direction that stands for all of them."""
+
+
+def direction_or_all(text: object) -> tuple[Fraction, Fraction] | str:
+    """A direction, or "all" for all directions."""
+    return ALL if str(text) == ALL else direction_vector(text)
+
+
 def cell_numbers(text: object) -> tuple[int, int]:
     """How many cells a drawing shows in two directions, such as 4,2."""
     parts = str(text).split(",")

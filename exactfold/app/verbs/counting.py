@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from os import PathLike
-from typing import TYPE_CHECKING, Final, TypeGuard, cast, overload
+from typing import TYPE_CHECKING, Final, Literal, TypeGuard, cast, overload
 
 from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # counting one sheet does not need them
     from typing import TypeAlias
 
     from exactfold.branches.counting.find import BoundaryHeights, Deficits, Signs
+    from exactfold.branches.periodic.directions_result import DirectionsCount
     from exactfold.branches.periodic.result import PeriodicCount
     from exactfold.branches.values.branch import Branch
     from exactfold.branches.values.result import BranchCount
@@ -118,6 +119,14 @@ def count(  # type: ignore[overload-overlap]  # text is one sheet, not a list of
     progress: Progress | None = ...,
 ) -> BranchCount | Decomposition: ...
 @overload
+def count(  # type: ignore[overload-overlap]  # text is no direction
+    sheet: PeriodicPattern | PatternLike,
+    *,
+    direction: Literal["all"],
+    limit: float | None = ...,
+    progress: Progress | None = ...,
+) -> DirectionsCount: ...
+@overload
 def count(
     sheet: PeriodicPattern | PatternLike,
     *,
@@ -140,7 +149,7 @@ def count(
 def count(
     sheet: PeriodicPattern | PatternLike | Iterable[PatternLike],
     *,
-    direction: Sequence[RationalLike] | None = None,
+    direction: Sequence[RationalLike] | Literal["all"] | None = None,
     method: str = "auto",
     seed: int = 0,
     snap: Snap | None = None,
@@ -148,7 +157,7 @@ def count(
     workers: int = 1,
     limit: float | None = LIMIT,
     progress: Progress | None = None,
-) -> BranchCount | Decomposition | PeriodicCount | Many:
+) -> BranchCount | Decomposition | PeriodicCount | DirectionsCount | Many:
     """Count the ways in which a sheet, or each of many sheets, starts to fold, with proof.
 
     The type of the result says what a way is. A `BranchCount` lists the branches of a triangulated
@@ -165,7 +174,8 @@ def count(
     raises an error, the error is its result, and the others go on.
 
     A periodic sheet (`PeriodicPattern`, or anything that `read_cell` takes) is counted for one
-    `direction`, and the result is a `PeriodicCount`; of the other arguments only `limit` and
+    `direction`, and the result is a `PeriodicCount`; with `direction="all"` it is a
+    `DirectionsCount`, about all directions together. Of the other arguments only `limit` and
     `progress` go with it. Any other sheet is then one cell of a periodic sheet: see `drawn_cell`.
 
     Raises `InputError` for anything that is not a sheet, `UsageError` for an unknown method, for
@@ -189,6 +199,10 @@ def count(
             raise UsageError("a periodic sheet is counted for one `direction`, such as (3, 4)")
         if (method, seed, snap, number, workers) != ("auto", 0, None, None, 1):
             raise UsageError("only `limit` and `progress` go with `direction`")
+        if direction == "all":
+            from exactfold.branches.periodic.directions import count_directions
+
+            return count_directions(_cell(sheet), limit=limit, progress=progress)
         from exactfold.branches.periodic.counting import count_periodic
 
         return count_periodic(_cell(sheet), direction, limit=limit, progress=progress)

@@ -18,7 +18,8 @@ from exactfold._support.documents import (
 )
 from exactfold._support.plurals import agreeing, counted
 from exactfold._support.results import Certified, Ways
-from exactfold._support.verdict import Verdict
+from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 
@@ -233,6 +234,34 @@ class PeriodicCount(Ways[PeriodicBranch], Certified):
     def listed(self) -> tuple[PeriodicBranch, ...]:
         """The branches."""
         return self.branches
+
+    def with_letters(self, letters: str) -> tuple[Verdict, tuple[int, ...]]:
+        """Whether the sheet starts to roll up with given letters, and the branches that do so.
+
+        `letters` has M, V, F (flat) or U (free) for each edge. A branch and its mirror image are
+        the same; branches are numbered from 1. Pleats and families are not compared: if there are
+        any, and no branch has the letters, that is UNDECIDED. Raises `UsageError`.
+        """
+        if len(letters) != len(self.pattern.edges) or set(letters) - set("MVFU"):
+            raise UsageError(
+                f"{letters!r}: give one of M, V, F, U for each of the "
+                f"{counted(len(self.pattern.edges), 'edge')} of the cell"
+            )
+        other = letters.translate(str.maketrans("MV", "VM"))
+        fits = {
+            k + 1: [
+                all(a in ("U", b) or b == "U" for a, b in zip(side, branch.letters, strict=True))
+                for side in (letters, other)
+            ]
+            for k, branch in enumerate(self.branches)
+        }
+        found = tuple(k for k, sides in fits.items() if any(sides))
+        sure = tuple(k for k in found if "U" not in self.branches[k - 1].letters)
+        if sure:
+            return PROVED, sure
+        if found or self.status is not PROVED or self.pleats or self.families:
+            return UNDECIDED, found
+        return REFUTED, ()
 
     def __repr__(self) -> str:
         pleats, branches = len(self.pleats), counted(len(self.branches), "branch")

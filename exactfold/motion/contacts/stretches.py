@@ -39,10 +39,9 @@ def on_start_tube(start: StartTube, begin: int, end: int) -> Stretch:
 def on_tube(tube: Tube, begin: int, end: int) -> Stretch:
     """The stretch of a tube from one parameter to another."""
     one = float(1 << tube.bits)
-    rows = [np.array([x / one for x in row]) for row in tube.coefficients]
     radius = tube.radius_within(max(abs(begin), abs(end)))
     radii = [r / one for r in tube.lengths(radius)]
-    return _stretch(tube.framework, rows, radii, begin, end, PARAMETER_BITS)
+    return _stretch(tube.framework, tube.in_floats, radii, begin, end, PARAMETER_BITS)
 
 
 def on_branch_point_tube(tube: BranchPointTube, begin: int, end: int) -> Stretch:
@@ -55,7 +54,7 @@ def on_branch_point_tube(tube: BranchPointTube, begin: int, end: int) -> Stretch
 
 def _stretch(
     framework: Framework,
-    rows: Sequence[FloatArray],
+    rows: Sequence[FloatArray] | FloatArray,
     radii: Sequence[float],
     begin: int,
     end: int,

@@ -6,17 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import comb
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
 from exactfold.errors import NotApplicableError
+from exactfold.motion.curves.bordered import Bordered, factors_of, sign_of
 from exactfold.motion.curves.framework import Framework
-from exactfold.motion.curves.start import Start, blown_up, blown_up_jacobian, bordered, factorised
-
-if TYPE_CHECKING:
-    from scipy.sparse.linalg import SuperLU
+from exactfold.motion.curves.start import Start, blown_up, blown_up_rows
 
 ORDER = 10
 TOLERANCE = 1e-11
@@ -175,7 +172,7 @@ def continued(
     """Yield `first` and then, without end, the pieces that follow it.
 
     Each piece is the Taylor polynomial at its start, whose parameter is arclength to first order.
-    One sparse factorisation of the Jacobian gives all coefficients, and Newton's method uses it to
+    One factorisation of the Jacobian gives all coefficients, and Newton's method uses it to
     correct the start. Raises `LostCurveError` if steps become too short.
     """
     piece = first
@@ -227,7 +224,8 @@ def expansion(
         along[k] = framework.along(series[k])
     if not np.isfinite(series).all():
         raise LostCurveError("the curve leaves the range of floats")
-    return series, _orientation(factors, tangent[held])
+    # T spans the kernel of J, so det [J; e_held] = T_held det [J; T].
+    return series, factors.sign * int(np.sign(tangent[held]))
 
 
 def orientation_at(framework: Framework, x: FloatArray, direction: FloatArray) -> int:
@@ -235,16 +233,13 @@ def orientation_at(framework: Framework, x: FloatArray, direction: FloatArray) -
     0.
     """
     held = int(np.argmax(np.abs(direction)))
-    try:
-        factors = factorised(bordered(framework.jacobian(x), held))
-    except RuntimeError:
-        return 0
-    return _orientation(factors, float(direction[held]))
+    sign = sign_of(framework, framework.flat_edges + framework.along(x), held)
+    return sign * int(np.sign(direction[held]))
 
 
 def on_curve(
     framework: Framework, x: FloatArray, direction: FloatArray
-) -> tuple[FloatArray, SuperLU, int]:
+) -> tuple[FloatArray, Bordered, int]:
     """The configuration near x with the same value of the unknown that changes most.
 
     Also returns the factorised bordered Jacobian at x, and the number of that unknown. Raises
@@ -252,8 +247,8 @@ def on_curve(
     """
     held = int(np.argmax(np.abs(direction)))
     try:
-        factors = factorised(bordered(framework.jacobian(x), held))
-    except RuntimeError:
+        factors = factors_of(framework, framework.flat_edges + framework.along(x), held)
+    except np.linalg.LinAlgError:
         raise LostCurveError("the Jacobian is singular") from None
     last = np.inf
     for _ in range(_CORRECTIONS):
@@ -283,8 +278,8 @@ def near_flat(framework: Framework, x: FloatArray) -> FloatArray:
     y = x / scale
     held = 3 * int(np.argmax(np.abs(y[2::3]))) + 2
     try:
-        factors = factorised(bordered(blown_up_jacobian(framework, y, t * t), held))
-    except RuntimeError:
+        factors = factors_of(framework, blown_up_rows(framework, y, t * t), held)
+    except np.linalg.LinAlgError:
         return x
     for _ in range(2):
         y = y + factors.solve(np.append(-blown_up(framework, y, t * t), 0.0))
@@ -297,28 +292,3 @@ def _radius(coefficients: FloatArray, tolerance: float) -> float:
     sizes = np.max(np.abs(coefficients), axis=1)
     bounds = [(tolerance / sizes[k]) ** (1.0 / k) for k in (top - 1, top) if sizes[k]]
     return float(min(bounds, default=1.0))
-
-
-def _orientation(factors: SuperLU, component: float) -> int:
-    """The sign of det [J; T] for the tangent T, from the factors of [J; e_held].
-
-    T spans the kernel of J, so det [J; e_held] = T_held det [J; T].
-    """
-    diagonal = np.sign(factors.U.diagonal()).prod()
-    return int(diagonal * _parity(factors.perm_r) * _parity(factors.perm_c) * np.sign(component))
-
-
-def _parity(permutation: FloatArray) -> int:
-    seen = np.zeros(len(permutation), dtype=bool)
-    sign = 1
-    for k in range(len(permutation)):
-        if seen[k]:
-            continue
-        length = 0
-        while not seen[k]:
-            seen[k] = True
-            k = int(permutation[k])
-            length += 1
-        if length % 2 == 0:
-            sign = -sign
-    return sign

@@ -197,11 +197,18 @@ class Framework:
 
     def dense(self, rows: FloatArray) -> FloatArray:
         """The same matrix as `matrix`, but dense."""
-        row, starts, _, _ = self._structure
         matrix = np.zeros((self._number, self.size))
-        columns = np.repeat(np.arange(self.size), np.diff(starts))
-        np.add.at(matrix, (row, columns), self._entries(rows))
+        if self.coupling.rows:  # diagonals may share vertices
+            np.add.at(matrix, self._at, self._entries(rows))
+        else:
+            matrix[self._at] = self._entries(rows)
         return matrix
+
+    @cached_property
+    def _at(self) -> tuple[IndexArray, IndexArray]:
+        """Row and column of every entry."""
+        row, starts, _, _ = self._structure
+        return row, np.repeat(np.arange(self.size), np.diff(starts))
 
     @cached_property
     def _structure(self) -> tuple[IndexArray, IndexArray, IndexArray, FloatArray]:

@@ -10,18 +10,14 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.errors import NotFollowedError
 from exactfold.motion.curves.angles import fold_angles_of
+from exactfold.motion.curves.bordered import DENSE, Bordered, factors_of
 from exactfold.motion.curves.framework import Framework
 from exactfold.solve.numeric.least_squares import least_squares
 
 if TYPE_CHECKING:  # as in `framework`
     from scipy.sparse import csc_array
-    from scipy.sparse.linalg import SuperLU
 
 _NEWTON = 30
-_DENSE = 60
-"""Matrices are dense for up to this many unknowns, so that SciPy, which is slow to load, is not
-needed.
-"""
 _SINGULAR = 2.0**48
 """A matrix is invertible if the largest entries of it and of its inverse have a product
 below this.
@@ -115,69 +111,22 @@ def blown_up(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
 
 def blown_up_jacobian(framework: Framework, y: FloatArray, s: float = 0.0) -> csc_array:
     """The derivative of `blown_up` with respect to the unknowns, sparse."""
-    return framework.matrix(_blown_up_rows(framework, y, s))
+    return framework.matrix(blown_up_rows(framework, y, s))
 
 
-def _blown_up_rows(framework: Framework, y: FloatArray, s: float) -> FloatArray:
+def blown_up_rows(framework: Framework, y: FloatArray, s: float = 0.0) -> FloatArray:
+    """The vectors of the bars in the derivative of `blown_up`, shape (bars, 3)."""
     rows = framework.along(y)
     rows[:, :2] = framework.flat_edges[:, :2] + s * rows[:, :2]
     return rows
 
 
-def bordered(jacobian: csc_array, held: int) -> csc_array:
-    """The square matrix that consists of a Jacobian and a last row that holds one unknown."""
-    rows, columns = jacobian.shape
-    end = jacobian.indptr[held + 1]
-    starts = jacobian.indptr.copy()
-    starts[held + 1 :] += 1
-    return type(jacobian)(
-        (np.insert(jacobian.data, end, 1.0), np.insert(jacobian.indices, end, rows), starts),
-        shape=(rows + 1, columns),
-    )
-
-
-def factorised(matrix: csc_array) -> SuperLU:
-    """The LU factors of a square matrix; raises `RuntimeError` if it is singular."""
-    from scipy.sparse.linalg import splu
-
-    return splu(matrix)
-
-
-@dataclass(frozen=True)
-class _Inverse:
-    """Solves linear systems with a dense matrix."""
-
-    inverse: FloatArray
-
-    def solve(self, right: FloatArray) -> FloatArray:
-        """The solution for a right side."""
-        return np.asarray(self.inverse @ right)
-
-
-def _factors(framework: Framework, y: FloatArray, held: int) -> SuperLU | _Inverse:
-    """A solver for the derivative at t = 0 with a last row that holds one unknown.
-
-    Raises `RuntimeError` or `LinAlgError` if the matrix is singular.
-    """
-    if framework.size > _DENSE:
-        return factorised(bordered(blown_up_jacobian(framework, y), held))
-    last = np.zeros((1, framework.size))
-    last[0, held] = 1.0
-    matrix = np.concatenate([framework.dense(_blown_up_rows(framework, y, 0.0)), last])
-    inverse = np.linalg.inv(matrix)
-    if not np.abs(inverse).max() * np.abs(matrix).max() < _SINGULAR:
-        raise np.linalg.LinAlgError("singular to the precision of floats")
-    return _Inverse(inverse)
-
-
-def _newton(
-    framework: Framework, y: FloatArray, held: int
-) -> tuple[FloatArray, SuperLU | _Inverse]:
+def _newton(framework: Framework, y: FloatArray, held: int) -> tuple[FloatArray, Bordered]:
     last = np.inf
     for _ in range(_NEWTON):
         try:
-            factors = _factors(framework, y, held)
-        except (RuntimeError, np.linalg.LinAlgError):
+            factors = factors_of(framework, blown_up_rows(framework, y), held, _SINGULAR)
+        except np.linalg.LinAlgError:
             break
         step = factors.solve(np.append(-blown_up(framework, y), 0.0))
         y = y + step
@@ -222,7 +171,7 @@ def _with_plane(framework: Framework, y: FloatArray) -> FloatArray:
     bent = framework.coupling.combined(-0.5 * e[:, 2] ** 2)
     right = np.append(bent, np.zeros(len(framework.ties)))
     y = y.copy()
-    if framework.size > _DENSE:
+    if framework.size > DENSE:
         y[columns] = least_squares(framework.matrix(rows)[:, columns], right)
     else:
         y[columns] = np.linalg.lstsq(framework.dense(rows)[:, columns], right)[0]

@@ -120,7 +120,7 @@ def polynomial(coefficients: Sequence[int], at: int) -> int:
     """
     total = 0
     for c in reversed(coefficients):
-        total = up(total * at, SCALE) + c
+        total = c - (-total * at >> SCALE)  # `up`, in the innermost loop
     return total
 
 

@@ -154,18 +154,13 @@ def squared(e: BigArray) -> list[BigArray]:
     [5, -6, 13, 0, 1]
     """
     longest = max(map(int.bit_length, e.ravel().tolist()), default=0)
-    bits = 2 * longest + (len(e) * e.shape[2]).bit_length() + 2
+    bits = _whole_bytes(2 * longest + (len(e) * e.shape[2]).bit_length() + 2)
     packed = e[-1]
     for row in e[-2::-1]:
         packed = (packed << bits) + row
-    whole = (packed * packed).sum(axis=1)
-    half, mask = 1 << (bits - 1), (1 << bits) - 1
-    coefficients = []
-    for _ in range(2 * len(e) - 1):
-        part = ((whole + half) & mask) - half
-        coefficients.append(part)
-        whole = (whole - part) >> bits
-    return coefficients
+    values = (packed * packed).sum(axis=1).tolist()
+    digits = [_digits(value, bits, 2 * len(e) - 1) for value in values]
+    return [np.array(part, dtype=object) for part in zip(*digits, strict=True)]
 
 
 def squared_length(curve: Sequence[Row]) -> list[int]:
@@ -176,16 +171,29 @@ def squared_length(curve: Sequence[Row]) -> list[int]:
     """
     count = 2 * len(curve) - 1
     longest = max(abs(x).bit_length() for row in curve for x in row)
-    bits = 2 * longest + (len(curve) * len(curve[0])).bit_length() + 2
+    bits = _whole_bytes(2 * longest + (len(curve) * len(curve[0])).bit_length() + 2)
     total = 0
     for column in zip(*curve, strict=True):
         packed = 0
         for x in reversed(column):
             packed = (packed << bits) + x
         total += packed * packed
-    half, mask = 1 << bits - 1, (1 << bits) - 1
-    total += ((1 << bits * count) - 1) // mask * half
-    return [(total >> bits * k & mask) - half for k in range(count)]
+    return _digits(total, bits, count)
+
+
+def _whole_bytes(bits: int) -> int:
+    return bits + -bits % 8
+
+
+def _digits(value: int, bits: int, count: int) -> list[int]:
+    """The c_k of sum_k c_k 2^(bits k), each of size at most 2^(bits - 1), for k < `count`."""
+    half, size = 1 << bits - 1, bits >> 3
+    value += ((1 << bits * count) - 1) // ((1 << bits) - 1) * half  # now no digit is negative
+    whole = value.to_bytes(size * count, "little")
+    return [
+        int.from_bytes(whole[at : at + size], "little") - half
+        for at in range(0, size * count, size)
+    ]
 
 
 def corrected(
@@ -215,11 +223,13 @@ def weights_of(matrix: FloatArray, enough: float = 0.0) -> Row:
     vanish. The vector is improved until it changes by at most the share `enough`, but not for ever.
     """
     vector = np.ones(len(matrix))
+    most = np.maximum.reduce  # the method `max` calls it, too, but only after a while
     for _ in range(_MOST_ROUNDS):
         image = matrix @ vector
-        after = vector + image / max(float(image.max()), 1e-300)
-        after /= after.max()
-        near = bool((np.abs(after - vector) <= enough * after).all())
+        after = image * (1.0 / max(float(most(image)), 1e-300))
+        after += vector
+        after *= 1.0 / float(most(after))
+        near = float(most(np.abs(after - vector) - enough * after)) <= 0
         vector = after
         if near:
             break

@@ -10,7 +10,7 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.tubes.arclength import Interval
 from exactfold.motion.tubes.length_equations import LengthEquations
-from exactfold.motion.tubes.piece import Ball, evaluated
+from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tubes.tube import Tube, prove_tube
 
 _LEAST = 1e-7  # the shortest step, in the unit of the framework
@@ -98,9 +98,9 @@ def _place(equations: LengthEquations, tube: Tube, parameter: int) -> _Place | N
     of the last tube would only repeat that tube.
     """
     framework = equations.framework
-    x, along = (
-        equations.floats(evaluated(curve, parameter)) for curve in (tube.coefficients, tube.slope)
-    )
+    s, curve = parameter / (1 << PARAMETER_BITS), tube.in_floats
+    powers = s ** np.arange(len(curve))
+    x, along = powers @ curve, (np.arange(1, len(curve)) * powers[:-1]) @ curve[1:]
     matrix = equations.matrix(framework.flat_edges + framework.along(x), along)
     try:
         x = x - np.linalg.solve(matrix, np.append(framework.residual(x), 0.0))

@@ -179,6 +179,11 @@ class Piece:
         """The coefficients of p'(s) over 2^bits."""
         return tuple(tuple(k * a for a in row) for k, row in enumerate(self.coefficients) if k)
 
+    @cached_property
+    def in_floats(self) -> FloatArray:
+        """The coefficients in floats, shape (coefficients, unknowns)."""
+        return np.array([self._floats(row) for row in self.coefficients])
+
     def _floats(self, row: Row) -> FloatArray:
         one = 1 << self.bits
         return np.array([x / one for x in row])
@@ -199,6 +204,9 @@ class Piece:
 def evaluated(curve: Sequence[Sequence[int]], parameter: int) -> Row:
     """The curve at a parameter over 2^PARAMETER_BITS, rounded down to whole units."""
     top = len(curve) - 1
-    powers = [parameter**k << PARAMETER_BITS * (top - k) for k in range(top + 1)]
-    down = PARAMETER_BITS * top
+    # Most parameters are short: without the zeros at their ends the products are, too.
+    zeros = min((parameter & -parameter).bit_length() - 1, PARAMETER_BITS)
+    places = PARAMETER_BITS - zeros if parameter else 0
+    short, down = parameter >> PARAMETER_BITS - places, places * top
+    powers = [short**k << places * (top - k) for k in range(top + 1)]
     return tuple([sum(map(mul, column, powers)) >> down for column in zip(*curve, strict=True)])

@@ -105,7 +105,7 @@ class Tube(Piece):
 
     def near(self, length: float, low: int, high: int) -> int:
         """A parameter between `low` and `high` that is approximately this length after `low`."""
-        rows = np.array([self._floats(row) for row in self.slope])
+        rows = self.in_floats[1:] * np.arange(1, len(self.coefficients))[:, None]
         return parameter_after(rows, length, PARAMETER_BITS, low, high)
 
     @cached_property
@@ -120,7 +120,7 @@ class Tube(Piece):
         The points have shape (points, unknowns). Floats propose them, and `located` proves them.
         Other points lie outside, up to rounding errors.
         """
-        curve = np.array([self._floats(row) for row in self.coefficients])
+        curve = self.in_floats
         row = np.array([t / (1 << ROW_BITS) for t in self.row])
         parameters = (points - curve[0]) @ row
         near = np.flatnonzero(np.abs(parameters) <= self.reach / (1 << REACH_BITS) * (1 + 1e-9))

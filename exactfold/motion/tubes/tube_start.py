@@ -41,6 +41,7 @@ from exactfold.rigidity.functionals import (
     vertex_sign_functional,
 )
 
+_SAME = 40
 ROOT_BITS = PARAMETER_BITS // 2
 """The parameter tau of a start tube is an integer over 2^ROOT_BITS; its square is s."""
 
@@ -230,8 +231,10 @@ def prove_start(
         )
     for _ in range(2):
         finer = equations.bits + equations.more + 2 * m + 1
-        curve = corrected(inverse, curve, _residuals(equations, curve, m), finer)
-        curve = _holding(curve, held)
+        before, residuals = curve, _residuals(equations, curve, m)
+        curve = _holding(corrected(inverse, curve, residuals, finer), held)
+        if _alike(before, curve, equations.bits):
+            break
     slopes = np.zeros_like(inverse)
     scaled = [series[k] * 2.0 ** (-2 * m * k) for k in range(len(series))]
     on_bars = framework.coupling.on_bars(inverse, len(framework.edges))
@@ -289,6 +292,14 @@ def names_at(
 def _holding(curve: Curve, held: int) -> Curve:
     """The curve on which one unknown is held constant."""
     return curve[0], *((*row[:held], 0, *row[held + 1 :]) for row in curve[1:])
+
+
+def _alike(curve: Curve, other: Curve, bits: int) -> bool:
+    """Whether coefficients differ so little that another step would change hardly any digit."""
+    most = max(
+        abs(x - y) for a, b in zip(curve, other, strict=True) for x, y in zip(a, b, strict=True)
+    )
+    return most < 1 << max(bits - _SAME, 0)
 
 
 def _halvings(series: FloatArray) -> int:

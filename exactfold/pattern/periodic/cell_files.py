@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -29,9 +29,10 @@ def read_cell(cell: str | PathLike[str] | Mapping[str, Any]) -> PeriodicPattern:
     A plain file is one JSON object `{"format": "exactfold periodic pattern", "lattice": [[x, y],
     [x, y]], "points": [[x, y], ...], "faces": [[[v, i, j], [v, i, j], [v, i, j]], ...]}` with
     rational numbers in quotes, such as "1/3"; the corner [v, i, j] is `points[v]` + i `lattice[0]`
-    + j `lattice[1]`. In a FOLD file `vertices_coords` and `faces_vertices` describe the cell,
-    `frame_exactfold:lattice` has the lattice, and `faces_exactfold:offsets` the pairs [i, j] of all
-    corners.
+    + j `lattice[1]`. An optional list `diagonals` has the edges [u, v, i, j] inside panels, from u
+    to v moved by i and j lattice vectors. In a FOLD file `vertices_coords` and `faces_vertices`
+    describe the cell, `frame_exactfold:lattice` has the lattice, and `faces_exactfold:offsets` the
+    pairs [i, j] of all corners.
 
     Raises `NotFoldError` for JSON without these keys, `UnreadableFileError`, `TooLargeError`, and
     the errors of `PeriodicPattern`; the message begins with the name of the file.
@@ -71,8 +72,9 @@ def _of_object(document: Mapping[str, Any]) -> PeriodicPattern:
             f'this is not the cell of a periodic sheet: it has neither "format": "{FORMAT}" nor '
             f"`{LATTICE_KEY}`"
         )
-    parts = [_list(document, key) for key in ("lattice", "points", "faces")]
-    return _limited(*parts)
+    lattice, points, faces = (_list(document, key) for key in ("lattice", "points", "faces"))
+    diagonals = _list(document, "diagonals") if "diagonals" in document else []
+    return _limited(lattice, points, faces, diagonals)
 
 
 def _list(document: Mapping[str, Any], key: str) -> list[Any]:
@@ -98,8 +100,10 @@ def _of_fold(document: Mapping[str, Any]) -> PeriodicPattern:
     return _limited(document[LATTICE_KEY], points, corners)
 
 
-def _limited(lattice: Any, points: list[Any], faces: Any) -> PeriodicPattern:
-    pattern = PeriodicPattern(_rational(lattice), _rational(points), faces)
+def _limited(
+    lattice: Any, points: list[Any], faces: Any, diagonals: Sequence[Any] = ()
+) -> PeriodicPattern:
+    pattern = PeriodicPattern(_rational(lattice), _rational(points), faces, diagonals)
     numbers = [*pattern.lattice, *pattern.points]
     check_coordinates(numbers)
     check_common_denominator(numbers)
@@ -123,12 +127,14 @@ def cell_document(cell: PeriodicPattern, title: str | None = None) -> dict[str, 
     True
     """
     named = {} if title is None else {"title": title}
+    inside = {"diagonals": [list(edge) for edge in cell.diagonals]} if cell.diagonals else {}
     return {
         "format": FORMAT,
         **named,
         "lattice": [list(map(format_rational, vector)) for vector in cell.lattice],
         "points": [list(map(format_rational, point)) for point in cell.points],
         "faces": [[list(corner) for corner in face] for face in cell.faces],
+        **inside,
     }
 
 

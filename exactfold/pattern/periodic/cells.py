@@ -169,6 +169,27 @@ def check_cover(
         )
 
 
+def known_edges(given: Iterable[Any], edges: Sequence[Side]) -> tuple[Side, ...]:
+    """Edges (u, v, i, j) of a cell in the form in which they are listed, sorted.
+
+    `MalformedPatternError` names one that is no edge.
+    """
+    known = set(edges)
+    found: set[Side] = set()
+    for entry in given:
+        side = tuple(entry) if isinstance(entry, Sequence) and not isinstance(entry, str) else ()
+        if len(side) != 4 or any(type(x) is not int for x in side):
+            raise MalformedPatternError(f"the diagonal {shown(entry)} is not [u, v, i, j]")
+        u, v, i, j = side
+        edge = next((e for e in ((u, v, i, j), (v, u, -i, -j)) if e in known), None)
+        if edge is None:
+            raise MalformedPatternError(
+                f"the diagonal {named((u, v, i, j))} is no edge of the cell", edges=[(u, v)]
+            )
+        found.add(edge)
+    return tuple(sorted(found))
+
+
 def named(side: Side) -> str:
     """An edge in a message: its ends, and how the second is moved.
 

@@ -11,7 +11,7 @@ from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import rational
 from exactfold.pattern.crease_pattern import CreasePattern, Point
 from exactfold.pattern.panel_pattern import PanelPattern
-from exactfold.pattern.periodic.cells import Corner
+from exactfold.pattern.periodic.cells import Corner, Side
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 from exactfold.pattern.triangulating.panels import triangles_by_face
 
@@ -35,7 +35,8 @@ def drawn_cell(
     divide it and the second one.
 
     The edges of the border are creases of the periodic sheet. Panels with more than three corners
-    are cut into triangles, along the diagonals of `triangulating_edges`.
+    are cut into triangles, along the diagonals of `triangulating_edges`, which are the `diagonals`
+    of the result.
 
     Raises `NotPeriodicError` if the border has no such parts, or if the sheet does not repeat I
     times J times; `NotApplicableError` for irrational coordinates, a hole, or over `MOST_SIDES`
@@ -59,9 +60,17 @@ def drawn_cell(
             f"{len(chosen)} differ in more than such a translation"
         )
     cut = triangles_by_face(sheet)
-    triangles = [triangle for k in chosen.values() for triangle in cut[k]]
-    faces = [tuple(corners[v] for v in triangle) for triangle in triangles]
-    return PeriodicPattern((first, second), kept, faces)
+    faces: list[tuple[Corner, ...]] = []
+    diagonals: list[Side] = []
+    for k in chosen.values():
+        rim = set(pairwise((*panels[k], panels[k][0])))
+        for triangle in cut[k]:
+            faces.append(tuple(corners[v] for v in triangle))
+            for u, v in pairwise((*triangle, triangle[0])):
+                if (u, v) not in rim:
+                    (a, i, j), (b, n, m) = corners[u], corners[v]
+                    diagonals.append((a, b, n - i, m - j))
+    return PeriodicPattern((first, second), kept, faces, diagonals)
 
 
 def other_lattices(sheet: CreasePattern | PanelPattern) -> list[tuple[Point, Point]]:

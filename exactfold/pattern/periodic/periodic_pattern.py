@@ -27,7 +27,9 @@ class PeriodicPattern:
     `lattice[1]`, counter-clockwise; if all faces are clockwise, all are reversed. All coordinates
     are rational (anything that `as_rational` accepts). The faces and their translates must cover
     the plane, each point once. An edge may join a vertex to a translate of itself, and two edges
-    may join the same two vertices. V vertices have 3 V edges and 2 V faces.
+    may join the same two vertices. V vertices have 3 V edges and 2 V faces. `diagonals` are edges
+    inside panels with more than three corners: they fold only if the sheet is taken for one of
+    triangles.
 
     Raises `NotPeriodicError` for a cell that does not fit together, `DegenerateFaceError`,
     `OverlapError`, `MalformedPatternError`, `NumberError`; each names the face, edge or vertex.
@@ -42,12 +44,14 @@ class PeriodicPattern:
     lattice: tuple[Point, Point]
     points: tuple[Point, ...]
     faces: tuple[Face, ...]
+    diagonals: tuple[Side, ...] = ()
 
     def __init__(
         self,
         lattice: Iterable[Sequence[RationalLike]],
         points: Iterable[Sequence[RationalLike]],
         faces: Iterable[Sequence[Sequence[int]]],
+        diagonals: Iterable[Sequence[int]] = (),
     ) -> None:
         vectors = cells.pairs(lattice, "lattice vector", as_rational)
         cells.check_lattice(vectors)
@@ -57,6 +61,8 @@ class PeriodicPattern:
         object.__setattr__(self, "points", spots)
         object.__setattr__(self, "faces", cells.oriented(given, self.place))
         cells.check_cover(self.faces, len(spots), self.place, self.area)
+        inside = cells.known_edges(diagonals, self.edges)
+        object.__setattr__(self, "diagonals", inside)
 
     def place(self, corner: Corner) -> Point:
         """The point of the plane at which a corner (v, i, j) lies."""

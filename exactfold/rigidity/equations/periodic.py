@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -123,6 +123,40 @@ class PeriodicStar:
         )
 
 
+def star_of(
+    sheet: PeriodicPattern, vertex: int, height: Callable[[int, Fraction, Fraction], Row]
+) -> PeriodicStar:
+    """The form of a vertex, where `height(u, x, y)` is a row: the height of u moved to (x, y)."""
+    spokes = sheet.spokes(vertex)
+    hub = height(vertex, Fraction(0), Fraction(0))
+    rows = [
+        tuple(a - b for a, b in zip(height(u, *d), hub, strict=True))
+        for (u, _, _), d in zip(sheet.star(vertex), spokes, strict=True)
+    ]
+    whole = star_matrix(spokes, lambda a, b: Fraction(a) / b)
+    matrix = tuple(tuple(row[1:]) for row in whole[1:])
+
+    def is_timelike(cone: Sequence[Fraction]) -> bool:
+        images = (sum(map(mul, row, cone), Fraction(0)) for row in matrix)
+        return sum(map(mul, images, cone), Fraction(0)) > 0
+
+    cone = round_slopes([x * x + y * y for x, y in spokes], is_timelike)
+    return PeriodicStar(tuple(rows), matrix, tuple(cone))
+
+
+def bend_of(
+    sheet: PeriodicPattern, edge: Side, height: Callable[[int, Fraction, Fraction], Row]
+) -> Row:
+    """The row that is positive where a fold is a valley: the jump of the slope across it."""
+    u, v, i, j = edge
+    corners: list[Corner] = [(u, 0, 0), (v, i, j), *sheet.opposite(edge)]
+    places = [sheet.place(corner) for corner in corners]
+    rows = (height(w, *at) for (w, _, _), at in zip(corners, places, strict=True))
+    columns = zip(*rows, strict=True)
+    weights = bend_weights(places)
+    return tuple(sum(map(mul, weights, column), Fraction(0)) for column in columns)
+
+
 @dataclass(frozen=True)
 class PeriodicProblem:
     """K_v(h) = 0 for all vertices of a periodic sheet, on the heights that roll up across n.
@@ -163,12 +197,8 @@ class PeriodicProblem:
         """The number of unknowns, one less than the number of vertices of `sheet`."""
         return self.sheet.V - 1
 
-    def height(self, corner: Corner) -> Row:
-        """The height at a corner, modulo linear functions, as a row on z."""
-        x, y = self.sheet.place(corner)
-        return self._row(corner[0], x, y)
-
-    def _row(self, vertex: int, x: Fraction, y: Fraction) -> Row:
+    def height(self, vertex: int, x: Fraction, y: Fraction) -> Row:
+        """The height of a vertex, moved to (x, y), modulo linear functions: a row on z."""
         along = self.direction[0] * x + self.direction[1] * y
         row = [Fraction(0)] * self.size + [along * along * self.unit / 2]
         if vertex:
@@ -184,24 +214,7 @@ class PeriodicProblem:
     @cached_property
     def stars(self) -> tuple[PeriodicStar, ...]:
         """The form of every vertex of `sheet`."""
-        return tuple(map(self._star, range(self.sheet.V)))
-
-    def _star(self, vertex: int) -> PeriodicStar:
-        spokes = self.sheet.spokes(vertex)
-        hub = self._row(vertex, Fraction(0), Fraction(0))
-        rows = [
-            tuple(a - b for a, b in zip(self._row(u, *d), hub, strict=True))
-            for (u, _, _), d in zip(self.sheet.star(vertex), spokes, strict=True)
-        ]
-        whole = star_matrix(spokes, lambda a, b: Fraction(a) / b)
-        matrix = tuple(tuple(row[1:]) for row in whole[1:])
-
-        def is_timelike(cone: Sequence[Fraction]) -> bool:
-            images = (sum(map(mul, row, cone), Fraction(0)) for row in matrix)
-            return sum(map(mul, images, cone), Fraction(0)) > 0
-
-        cone = round_slopes([x * x + y * y for x, y in spokes], is_timelike)
-        return PeriodicStar(tuple(rows), matrix, tuple(cone))
+        return tuple(star_of(self.sheet, v, self.height) for v in range(self.sheet.V))
 
     def system(self, place: int) -> QuadraticSystem:
         """The forms of all vertices but the first, in the chart z_place = 1."""
@@ -223,7 +236,9 @@ class PeriodicProblem:
     @cached_property
     def folds(self) -> Mapping[Side, tuple[int, ...]]:
         """Rows on z that are positive where a fold is a valley and negative for a mountain."""
-        return {edge: integer_row(self._bend(edge)) for edge in self.sheet.edges}
+        return {
+            edge: integer_row(bend_of(self.sheet, edge, self.height)) for edge in self.sheet.edges
+        }
 
     @cached_property
     def bends_at(self) -> tuple[tuple[Row, ...], ...]:
@@ -247,10 +262,3 @@ class PeriodicProblem:
             factors = [other_factor(self.stars[v].form, row) for v in ends]
             found[edge] = tuple(integer_row(m) for m in factors if m is not None)
         return found
-
-    def _bend(self, edge: Side) -> Row:
-        u, v, i, j = edge
-        corners: list[Corner] = [(u, 0, 0), (v, i, j), *self.sheet.opposite(edge)]
-        weights = bend_weights([self.sheet.place(corner) for corner in corners])
-        rows = zip(*map(self.height, corners), strict=True)
-        return tuple(sum(map(mul, weights, column), Fraction(0)) for column in rows)

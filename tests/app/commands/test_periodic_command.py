@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
-from running import PROVED, run
+from running import PROVED, UNDECIDED, run
 
 import exactfold
 from exactfold import schema
+from exactfold.app.pictures import directions_plot
 from exactfold.branches import PeriodicCount, count_periodic
 from exactfold.errors import UsageError
 from exactfold.pattern import PeriodicPattern, read_cell
@@ -51,10 +52,99 @@ def test_the_answer_in_words(tmp_path: Path) -> None:
     assert "no certificate was written" in twist.stderr
 
 
+def test_rigid_panels_in_json_and_words() -> None:
+    result = run("count", "miura-cell", "--json")
+    assert result.exit_code == PROVED
+    data = json.loads(result.stdout)
+    Draft202012Validator(schema("panel-cell")).validate(data)
+    pair, planar = data["motions"]
+    assert (pair["dimension"], pair["direction"], pair["planar"]) == (2, ["0", "1"], False)
+    assert (planar["letters"], planar["planar"], planar["folds"]) == ("MVMMVVVM", True, "proved")
+    words = run("count", "square-twist-cell").stdout
+    assert words.startswith("2 components of periodic motions of rigid panels - PROVED")
+    assert "Q(sqrt (1/5))" in words
+    drawing = run("count", "miura", "--periodic", "--cell", "4,2")
+    assert drawing.exit_code == PROVED
+    assert "across 0,1" in drawing.stdout
+    undecided = run("count", "waterbomb-cell")
+    assert undecided.exit_code == UNDECIDED
+    assert "--direction X,Y counts" in " ".join(undecided.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "ways"),
+    [
+        (("miura-cell", "--letters", "VMVVMMMV"), 0, [2]),
+        (("miura-cell", "--letters", "MMFFFFUU"), 0, [1]),
+        (("miura-cell", "--letters", "MMMFFFUU"), 1, []),
+        (("miura-cell", "--letters", "FFFFFFFF"), 1, []),
+        (("waterbomb-cell", "--letters", "UUUUUUUUU"), UNDECIDED, []),
+        (("waterbomb-cell", "--direction", "1,2", "--letters", "VVMMVVMMM"), 0, [1]),
+        (("waterbomb-cell", "--direction", "1,2", "--letters", "VVVVVVVVV"), 1, []),
+    ],
+)
+def test_letters_on_a_cell(arguments: tuple[str, ...], code: int, ways: list[int]) -> None:
+    result = run("match", *arguments, "--json")
+    assert result.exit_code == code
+    data = json.loads(result.stdout)
+    Draft202012Validator(schema("periodic-match")).validate(data)
+    assert data["ways"] == ways
+    words = run("match", *arguments).stdout
+    assert {0: "starts to fold", 1: "does not", UNDECIDED: "UNDECIDED"}[code] in words
+
+
+def test_letters_that_do_not_fit_a_cell() -> None:
+    for arguments, message in (
+        (("miura-cell",), "give them with --letters"),
+        (("miura-cell", "--letters", "MV"), "for each of the 8 folds"),
+        (("miura-cell", "--letters", "MV", "--direction", "1,2"), "for each of the 12 edges"),
+        (("two-vertex", "--direction", "1,2"), "--direction goes with the cell"),
+    ):
+        assert message in run("match", *arguments).stderr
+
+
+def test_all_directions_in_json_and_words(tmp_path: Path) -> None:
+    result = run("count", "waterbomb-cell", "--direction", "all", "--json")
+    assert result.exit_code == PROVED
+    data = json.loads(result.stdout)
+    Draft202012Validator(schema("directions")).validate(data)
+    assert [branch["b"] for branch in data["branches"]] == [1, -1, -1, -1]
+    assert (data["permutation"], data["cycles"]) == ([1, 2, 4, 3], [[1], [2], [3, 4]])
+    (crossing,) = data["crossings"]
+    assert (crossing["direction"]["x"], crossing["direction"]["y"]) == (["0"], ["1"])
+    words = run("count", "waterbomb-cell", "--direction", "all").stdout
+    assert words.startswith("4 branches over all directions - PROVED")
+    assert "after 2 half" in words
+    undecided = run("count", "miura-cell", "--direction", "all")
+    assert undecided.exit_code == UNDECIDED
+    assert "3 spaces of pleats" in " ".join(undecided.stdout.split())
+    refused = run("count", "miura-cell", "--direction", "all", "--certificate", tmp_path / "c")
+    assert "--direction all has no certificate" in refused.stderr
+
+
+def test_a_picture_by_direction(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(directions_plot, "_SAMPLES", 12)
+    file = tmp_path / "w.svg"
+    result = run("draw", "waterbomb-cell", "--direction", "all", "--most", "1", "-o", file)
+    assert result.exit_code == PROVED
+    text = file.read_text()
+    assert "1 crossing and 3 analytic sheets, proved" in text
+    assert text.count("<path") == 4 + 9
+    assert text.count('stroke-dasharray="3 3"') == 2
+    for arguments, message in (
+        ((), "give --direction all"),
+        (("--direction", "3,4"), "draw takes --direction all"),
+        (("--direction", "all", "--way", "1"), "--direction does not go with"),
+        (("--cell", "2,2"), "--cell goes with --direction all"),
+    ):
+        assert message in run("draw", "waterbomb-cell", *arguments).stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("miura-cell",), "give the direction in which it rolls up"),
+        (("miura-cell", "--certificate", "c.json"), "have no certificate"),
+        (("miura-cell", "--periodic", "--direction", "1,2"), "give --direction, or --periodic"),
         (("miura-cell", "--direction", "3"), "is not a direction such as 3,4"),
         (("miura-cell", "--direction", "0,0"), "0,0 is no direction"),
         (("miura-cell", "--direction", "1,2", "--method", "popping"), "--method does not go with"),

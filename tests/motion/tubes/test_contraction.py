@@ -23,6 +23,7 @@ from exactfold.motion.tubes.contraction import (
 )
 from exactfold.motion.tubes.float_bounds import contraction_in_floats, series_at
 from exactfold.motion.tubes.length_equations import LengthEquations, squared
+from exactfold.motion.tubes.piece import PARAMETER_BITS, evaluated
 from exactfold.motion.tubes.tracks import follow_proved, ray
 from exactfold.motion.tubes.tube import _bounds, _residuals, _stretch
 from exactfold.pattern.triangulating.random_squares import random_square
@@ -271,6 +272,15 @@ def test_squares_of_curves() -> None:
         value = sum(part * s**k for k, part in enumerate(e))
         total = sum(part * s**k for k, part in enumerate(squared(e)))
         assert (total == (value**2).sum(axis=1)).all()
+
+
+def test_the_curve_at_a_parameter_is_rounded_down() -> None:
+    source = random.Random(5)
+    curve = [[source.randrange(-(1 << 64), 1 << 64) for _ in range(3)] for _ in range(5)]
+    for s in (0, 1, -1, 3 << 38, -5 << 30, 1 << 40, 7 << 41, (1 << 40) - 1):
+        at = Fraction(s, 1 << PARAMETER_BITS)
+        exact = [sum(row[i] * at**k for k, row in enumerate(curve)) for i in range(3)]
+        assert evaluated(curve, s) == tuple(math.floor(x) for x in exact)
 
 
 def test_lengths_of_known_curves() -> None:
