@@ -464,6 +464,7 @@ def test_a_dead_process_is_a_line_that_is_tried_again(
     assert [d["status"] for d in lines(out)] == ["failed", "proved"]
 
 
+@pytest.mark.slow
 def test_on_dask(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     patterns = [random_square(2, seed=k) for k in range(5)]
