@@ -30,13 +30,18 @@ class ToleranceOptions(WayOptions):
             "--output",
         ),
     ] = None
+    certificate: Annotated[
+        Path | None,
+        written("Write the evidence of the radius for `exactfold check`.", "OUT.json"),
+    ] = None
     seed: Annotated[int, number("Seed of the random moves.", "S", least=0)] = 0
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every vertex and every relation.")] = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        apart(self.output, self.file)
+        apart(self.output, self.file, self.certificate)
+        apart(self.certificate, self.file)
 
 
 def goal(text: object) -> str:
