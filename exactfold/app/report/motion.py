@@ -31,6 +31,7 @@ from exactfold.motion.curves.events import (
 )
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.panels.families import FamilyMotion
+from exactfold.motion.periodic.rolling import RollingMotion
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion
@@ -46,7 +47,7 @@ _CORNERS: Final = 8
 
 
 def motion_report(
-    motion: Motion | PanelMotion | FamilyMotion,
+    motion: Motion | PanelMotion | FamilyMotion | RollingMotion,
     written: Sequence[str] = (),
     proof: MotionProof | PanelProof | None = None,
 ) -> Group:
@@ -94,7 +95,9 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     return rows
 
 
-def _mode_rows(motion: PanelMotion | FamilyMotion) -> list[tuple[str, RenderableType]]:
+def _mode_rows(
+    motion: PanelMotion | FamilyMotion | RollingMotion,
+) -> list[tuple[str, RenderableType]]:
     return [("way", cut(motion.name.removeprefix("way ")))]
 
 
@@ -139,10 +142,10 @@ def _enclosed(event: Event, *, passed: bool) -> str:
     return f"the first contact is between the times {low:.{digits}g} and {high:.{digits}g}{after}"
 
 
-def _proved(motion: Motion | PanelMotion | FamilyMotion) -> RenderableType:
+def _proved(motion: Motion | PanelMotion | FamilyMotion | RollingMotion) -> RenderableType:
     if isinstance(motion, Motion):
         return "followed in floats: not proved (--certificate proves it)"
-    if isinstance(motion, FamilyMotion):
+    if isinstance(motion, FamilyMotion | RollingMotion):
         return motion.reason
     if motion.exists is not PROVED:
         return "followed in floats: not proved"
