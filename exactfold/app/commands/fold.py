@@ -141,6 +141,8 @@ class Wanted(FoldOptions):
             by=self.by,
             through_branch_points=self.through_branch_points,
             held=held,
+            solid=self.solid,
+            stops=self.stop,
             progress=bar,
         )
 
@@ -150,7 +152,14 @@ class Wanted(FoldOptions):
         if warning is not None:
             say(f"warning: {warning}")
         bar("following")
-        return along_panels(chosen, until=self.until, frames=self.frames, by=self.by)
+        return along_panels(
+            chosen,
+            until=self.until,
+            frames=self.frames,
+            by=self.by,
+            solid=self.solid,
+            stops=self.stop,
+        )
 
     def _refuse_branches(self) -> None:
         """Raise `UsageError` for an option that only branches have."""
