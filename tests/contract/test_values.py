@@ -89,6 +89,8 @@ TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
 LOOPS = exactfold.motion.find_loops(ONE)
 FLAT_FOLDABLE = exactfold.panels.decompose(panels(single_vertex(4)))
 PROVING = {
+    "plates": exactfold.motion.Solid(Fraction(1, 5), "middle", Fraction(1, 4)),
+    "stops": exactfold.motion.Stops(Fraction(90), {(0, 4): Fraction(30)}),
     "motion of panels": exactfold.motion.follow_panels(FLAT_FOLDABLE, frames=3),
     "clearance of panels": exactfold.motion.prove_contacts(
         exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)

@@ -109,9 +109,13 @@ class Wanted(FoldOptions):
             ("--letters", self.letters),
             ("--by", self.by),
             ("--side", self.side),
+            ("--thickness", self.thickness),
+            ("--stop", self.stop or None),
         ):
             if value is not None:
-                raise UsageError(f"{option} does not go with --direction: name a way by --way N")
+                raise UsageError(
+                    f"{option} does not go with --direction; a way is named by --way N"
+                )
         self._refuse_branches()
         with Bar("reading") as bar:
             cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
@@ -184,6 +188,8 @@ class Wanted(FoldOptions):
             by=self.by,
             through_branch_points=self.through_branch_points,
             held=held,
+            solid=self.solid,
+            stops=self.stop,
             progress=bar,
         )
 
@@ -193,7 +199,14 @@ class Wanted(FoldOptions):
         if warning is not None:
             say(f"warning: {warning}")
         bar("following")
-        return along_panels(chosen, until=self.until, frames=self.frames, by=self.by)
+        return along_panels(
+            chosen,
+            until=self.until,
+            frames=self.frames,
+            by=self.by,
+            solid=self.solid,
+            stops=self.stop,
+        )
 
     def _refuse_branches(self) -> None:
         """Raise `UsageError` for an option that only branches have."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
@@ -98,6 +98,17 @@ def degrees(text: object) -> float:
         return approx_number(str(text))
     except NumberError:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+
+
+def one_of(names: Sequence[str]) -> Callable[[object], str]:
+    """A parser of one of some words."""
+
+    def read(text: object) -> str:
+        if text not in names:
+            raise typer.BadParameter(f"{text!r} is none of {', '.join(names)}")
+        return str(text)
+
+    return read
 
 
 def exact_number(text: object) -> Fraction:

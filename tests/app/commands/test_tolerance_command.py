@@ -43,6 +43,7 @@ def test_relations_are_shown():
     assert "may move alone" not in text
 
 
+@pytest.mark.slow
 def test_a_picture_has_a_circle_round_each_vertex(tmp_path):
     path = tmp_path / "circles.svg"
     result = run("tolerance", "two-vertex", "-o", path)
