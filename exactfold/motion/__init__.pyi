@@ -25,6 +25,8 @@ from exactfold.motion.panels.listing import panel_ways as panel_ways
 from exactfold.motion.panels.motion import PanelMotion as PanelMotion
 from exactfold.motion.panels.proving import PanelProof as PanelProof
 from exactfold.motion.panels.proving import prove_panels as prove_panels
+from exactfold.motion.periodic.rolling import RollingMotion as RollingMotion
+from exactfold.motion.periodic.rolling import roll as roll
 from exactfold.motion.proving import MotionProof as MotionProof
 from exactfold.motion.proving import prove as prove
 from exactfold.motion.solid.plates import Solid as Solid

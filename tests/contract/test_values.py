@@ -61,6 +61,9 @@ CELL = exactfold.pattern.read_cell("yoshimura-cell")
 ROLLED = exactfold.branches.count_periodic(CELL, (1, 2))
 TURNED = exactfold.branches.count_directions("waterbomb-cell")
 PANEL_CELL = exactfold.panels.count_panel_cell("miura-cell")
+ROLLING = exactfold.motion.roll(
+    "waterbomb-cell", (1, 2), way=2, cells=(1, 2), until="20deg", frames=2
+)
 LINE = exactfold.branches.AlgebraicLine((-2, 0, 1), (Fraction(1), Fraction(2)), ((Fraction(0),),))
 OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_connected_components(
@@ -155,6 +158,7 @@ VALUES = {
     "periodic count": ROLLED,
     "periodic branch": ROLLED[0],
     "all directions": TURNED,
+    "rolling motion": ROLLING,
     "tessellation of panels": PANEL_CELL,
     "periodic motion": PANEL_CELL[0],
     "part of a periodic motion": PANEL_CELL[0].parts[0],

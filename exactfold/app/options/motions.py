@@ -17,6 +17,8 @@ from exactfold.app.shell.parameters import (
     Pattern,
     PrescribedAngles,
     Resume,
+    RollDirection,
+    RollPatch,
     Side,
     exact_number,
     flag,
@@ -129,10 +131,14 @@ class FoldOptions(WayOptions):
             "OUT.json",
         ),
     ] = None
+    direction: RollDirection = None
+    patch: RollPatch = None
     as_json: Json = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.patch is not None and self.direction is None:
+            raise UsageError("--patch goes with --direction X,Y")
         if self.way is not None or self.letters is not None:
             for option, value in (
                 ("--drive", self.drive),

@@ -32,6 +32,7 @@ from exactfold.motion.curves.events import (
 )
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.panels.families import FamilyMotion
+from exactfold.motion.periodic.rolling import RollingMotion
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion
@@ -47,7 +48,7 @@ _CORNERS: Final = 8
 
 
 def motion_report(
-    motion: Motion | PanelMotion | FamilyMotion,
+    motion: Motion | PanelMotion | FamilyMotion | RollingMotion,
     written: Sequence[str] = (),
     proof: MotionProof | PanelProof | None = None,
 ) -> Group:
@@ -95,9 +96,11 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     return rows
 
 
-def _mode_rows(motion: PanelMotion | FamilyMotion) -> list[tuple[str, RenderableType]]:
+def _mode_rows(
+    motion: PanelMotion | FamilyMotion | RollingMotion,
+) -> list[tuple[str, RenderableType]]:
     rows: list[tuple[str, RenderableType]] = [("way", cut(motion.name.removeprefix("way ")))]
-    if motion.solid is not None:
+    if not isinstance(motion, RollingMotion) and motion.solid is not None:
         limits = {
             f"{name} at most {degrees(motion.solid.limit(letter)):.6g}"
             for name, letter in (("mountains", "M"), ("valleys", "V"))
@@ -156,10 +159,10 @@ def _between(event: Event) -> str:
     return f"between the times {low:.{digits}g} and {high:.{digits}g}"
 
 
-def _proved(motion: Motion | PanelMotion | FamilyMotion) -> RenderableType:
+def _proved(motion: Motion | PanelMotion | FamilyMotion | RollingMotion) -> RenderableType:
     if isinstance(motion, Motion):
         return "followed in floats: not proved (--certificate proves it)"
-    if isinstance(motion, FamilyMotion):
+    if isinstance(motion, FamilyMotion | RollingMotion):
         return motion.reason
     if motion.exists is not PROVED:
         return "followed in floats: not proved"

@@ -375,3 +375,23 @@ Side = Annotated[
         help="- follows the mirror image, with all signs and letters reversed.",
     ),
 ]
+
+RollDirection = Annotated[
+    tuple[Fraction, Fraction] | None,
+    typer.Option(
+        "--direction",
+        parser=direction_vector,
+        metavar="X,Y",
+        help="For the cell of a periodic sheet: the direction in which it rolls up. --way N is the "
+        "way of `count --direction`, in which all edges fold.",
+    ),
+]
+RollPatch = Annotated[
+    tuple[int, int] | None,
+    typer.Option(
+        "--patch",
+        parser=cell_numbers,
+        metavar="I,J",
+        help="With --direction: show I times J cells. Default: 5,5.",
+    ),
+]

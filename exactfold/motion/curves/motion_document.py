@@ -172,6 +172,29 @@ class MotionDocument(FrameKeys):
     """With --certificate."""
 
 
+class RollingMotionDocument(FrameKeys):
+    """A patch of a periodic sheet that rolls up along a branch."""
+
+    format: Literal["exactfold motion result"]
+    version: Literal[3]
+    pattern: PatternDocument
+    """The flat patch."""
+    theory: Literal["periodic"]
+    """What the sheet folds along."""
+    direction: Pair[int]
+    """The direction n across which it rolls up."""
+    cells: Pair[Positive]
+    """The numbers of cells in the patch, along both lattice vectors."""
+    screws: list[Pair[Pair[float]]]
+    """For each frame and lattice vector: the angle of the screw in radians, and its advance."""
+    assignment: Assignment
+    """By fold i-j of the patch: mountain, valley, flat, undecided, seen from +z."""
+    way: Positive
+    """The number of the way, as count --direction lists it."""
+    seconds: NotNegative
+    proof: None
+
+
 class PlatesDocument(TypedDict):
     """Panels with a thickness, in the unit of the pattern."""
 
