@@ -60,6 +60,7 @@ def test_jobs_are_taken_as_there_is_room() -> None:
     assert taken == list(range(12))
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_is_the_result_of_its_job() -> None:
     found = dict(as_they_end(2, square, range(10, 16)))
     assert type(found[13]) is WorkerDiedError

@@ -82,8 +82,13 @@ class Opened(Picture):
 
     @cached_property
     def left(self) -> tuple[Relation, ...]:
-        """The relations that the sheet nearly has but does not have (`left_relations`)."""
-        return left_relations(self.sheet)
+        """The relations that the sheet nearly has but does not have (`left_relations`).
+
+        Borders are left out where cuts were opened: there they are nearly straight because
+        creases were shortened, and how a sheet starts to fold does not depend on its border.
+        """
+        found = left_relations(self.sheet)
+        return tuple(one for one in found if one.kind != "border") if self.cuts else found
 
     @property
     def letters(self) -> dict[Edge, str]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
+from fractions import Fraction
+from functools import lru_cache, partial
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path
@@ -195,7 +196,7 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     >>> sheet.sheet, sheet.assignment[4, 5], len(sheet.lines)
     (<PanelPattern: 0 interior vertices, 1 fold, 2 panels>, 'M', 3)
     """
-    from exactfold.pattern.drawing.repair import attempts, exact_sheets
+    from exactfold.pattern.drawing.repair import attempts
     from exactfold.pattern.drawing.segments import boxed
 
     rule: Snap = reading.snap or ("exact" if drawing.exact else "auto")
@@ -203,7 +204,7 @@ def from_drawing(drawing: Drawing, reading: Reading = PLAIN) -> Opened:
     tried = attempts(given, reading.steps, reading.merge)
     for k, chosen in enumerate(tried, 1):
         try:
-            sheets = exact_sheets(given, snap=rule, merge=reading.merge, steps=chosen)
+            sheets = _sheets(given, rule, reading.merge, frozenset(chosen))
             again = partial(from_drawing, drawing)
             found = replace(_chosen(given, sheets, reading), reading=reading, again=again)
             return meaning(found, lambda: from_drawing(drawing, reading.as_written))
@@ -232,6 +233,17 @@ def _box_helps(drawing: Drawing, reading: Reading, error: Exception) -> bool:
     except InputError:
         return False
     return bool(found.sheet.folds)
+
+
+@lru_cache(maxsize=2)
+def _sheets(drawing: Drawing, snap: Snap, merge: Fraction | None, steps: frozenset[str]) -> Sheets:
+    """The sheets of a drawing, kept while they are read one after the other.
+
+    Two are kept, as a drawing with inexact digits is read as written, too.
+    """
+    from exactfold.pattern.drawing.repair import exact_sheets
+
+    return exact_sheets(drawing, snap=snap, merge=merge, steps=steps)
 
 
 def _has_creases_only(drawing: Drawing) -> bool:

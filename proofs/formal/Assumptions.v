@@ -1,6 +1,6 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Krawczyk
-  Drawing Rational Boxes Certificate Counted Example BranchExample.
+  Drawing Rational Boxes Certificate Counted Tables Integers Verify Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.
@@ -11,6 +11,8 @@ Print Assumptions branches.
 Print Assumptions krawczyk.
 Print Assumptions certified.
 Print Assumptions counted.
+Print Assumptions all_verified.
+Print Assumptions one_verified.
 
 (** The others together. *)
 Definition others :=
@@ -19,5 +21,5 @@ Definition others :=
    simple_iff_no_flat_star, different_sign_vectors, list_of_solutions, rigid,
    every_solution_on_a_branch, branch_has_one_representative, at_most_2_to_the_n,
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
-   boxed, no_star_is_flat, the_branch).
+   boxed, no_star_is_flat, near_branch, passed, swift_checked, the_branch).
 Print Assumptions others.

@@ -183,6 +183,57 @@ Proof.
 Qed.
 End Bend.
 
+(** ** One branch near heights with positive curvatures *)
+
+(** Heights on the right side of each vertex are near exactly one branch, whose folds bend like
+    theirs where they bend more than the distance allows. A vertex where such a fold ends is not flat. *)
+Theorem near_branch S (up : nat -> bool) (r : vec) (c : point) (R2 dist : R)
+  (folds : list (nat * nat * nat * nat * bool)) :
+  (forall v, In v (inner S) -> 0 < K S v r /\ 0 < sign (up v) * K2 S v (cone S v) r) ->
+  (forall v, In v (inner S ++ rim S) -> 0 <= multiplier S c R2 v) ->
+  sum (inner S) (fun v => multiplier S c R2 v * K S v r) <= dist ->
+  (forall i j l m valley, In (i, j, l, m, valley) folds ->
+    In (i, j, l) (corners (faces S)) /\ In (i, m, j) (corners (faces S)) /\ 0 < sign valley * bend S i j l m r /\
+    (let p := spoke (at_ S) in
+     dot (p i j) (p i j) * (2 / cross (p i j) (p i l) + 2 / cross (p i m) (p i j)) * dist <
+       bend S i j l m r * bend S i j l m r)) ->
+  exists h, has_rim S r h /\ solves S (fun _ => 0) h /\ in_nappes S up h /\
+    (forall v j l m valley, In v (inner S) -> In (v, j, l, m, valley) folds ->
+      0 < sign (up v) * K2 S v (cone S v) h) /\
+    (forall g, has_rim S r g -> solves S (fun _ => 0) g -> in_nappes S up g -> g = h) /\
+    energy S (minus h r) <= dist /\
+    (forall i j l m valley, In (i, j, l, m, valley) folds -> 0 < sign valley * bend S i j l m h).
+Proof.
+  intros Vs Ws Dist Fs.
+  destruct (one_solution_per_sign_vector S (fun _ => 0) r up) as (h & (Hr & Hs & Hn) & U); [intros; lra|].
+  assert (Rn : in_nappes S up r) by (intros v Hv; destruct (Vs v Hv); split; lra).
+  assert (En : energy S (minus h r) <= dist).
+  { eapply Rle_trans; [apply (distance S c R2 up h r); try assumption; exact Hr|].
+    eapply Rle_trans; [|exact Dist]. right. apply sum_ext. intros v Hv. f_equal.
+    rewrite (Hs v Hv), sqrt_0. destruct (Rn v Hv) as (P & _).
+    replace (K S v r) with (sqrt (K S v r) * sqrt (K S v r)) at 3 by now apply sqrt_sqrt. ring. }
+  assert (Letters : forall i j l m valley, In (i, j, l, m, valley) folds -> 0 < sign valley * bend S i j l m h).
+  { intros i j l m valley Hf. destruct (Fs _ _ _ _ _ Hf) as (C1 & C2 & Sg & Far).
+    apply (same_sign (bend S i j l m r) _ _ _ Sg Far).
+    rewrite (bend_minus S i j l m h r).
+    replace (bend S i j l m r + bend S i j l m (minus h r) - bend S i j l m r) with
+      (bend S i j l m (minus h r)) by ring.
+    eapply Rle_trans; [apply (bend_bound S i j l m (minus h r)); assumption|].
+    apply Rmult_le_compat_l; [|assumption].
+    pose proof (face_of_corner S _ _ _ C1). pose proof (face_of_corner S _ _ _ C2).
+    apply Rmult_le_pos; [apply dot_pos|].
+    apply Rplus_le_le_0_compat; apply Rlt_le, Rdiv_lt_0_compat; lra. }
+  exists h. split; [assumption|]. split; [assumption|]. split; [assumption|]. split; [|split; [|split; assumption]].
+  - intros v j l m valley Hv Hf. destruct (Hn v Hv) as (_ & P).
+    assert (N : K2 S v (cone S v) h <> 0).
+    { intros Z. destruct (Fs _ _ _ _ _ Hf) as (C1 & C2 & _). pose proof (Letters _ _ _ _ _ Hf) as B.
+      apply (bent_not_flat S v j l m h C1 C2 Hv).
+      - intros B0. rewrite B0 in B. lra.
+      - apply (both_nappes_flat S v h Hv); [|assumption]. rewrite (Hs v Hv). lra. }
+    destruct P as [P|P]; [assumption|]. exfalso. apply N. destruct (up v); simpl in P; lra.
+  - intros g Gr Gs Gn. symmetry. apply U. auto.
+Qed.
+
 (** ** The certificate *)
 
 Record certificate := Certificate {
@@ -303,51 +354,23 @@ Theorem certified : check_branch = true -> exists h,
 Proof.
   unfold check_branch, distance_ok. rewrite !andb_true_iff, !forallb_forall.
   intros ((Vs & (Ws & Dist)) & Fs).
-  destruct (one_solution_per_sign_vector S (fun _ => 0) r pops_up) as (h & (Hr & Hs & Hn) & U); [intros; lra|].
-  assert (Rn : in_nappes S pops_up r).
-  { intros v Hv. destruct (vertex_proved v Hv (Vs v Hv)) as (P & Q). split; lra. }
-  assert (En : energy S (minus h r) <= Q2R (distance2 c)).
-  { eapply Rle_trans; [apply (distance S (to_plane (centre c)) (Q2R (radius2 c)) pops_up h r)|].
-    - intros v Hv. specialize (Ws v Hv). apply at_most_R in Ws. rewrite Q2R_0 in Ws.
-      unfold weight in Ws. now rewrite (qmultiplier_R d ok) in Ws.
-    - assumption.
-    - assumption.
-    - exact Hr.
-    - apply at_most_R in Dist. rewrite qsum_R in Dist. eapply Rle_trans; [|exact Dist]. right.
-      apply sum_ext. intros v Hv. assert (Hv' : In v (inside d ++ border d)) by (apply in_or_app; now left).
-      rewrite Q2R_mult. unfold weight, curvature. rewrite (qmultiplier_R d ok), (qK2_R d ok) by assumption.
-      rewrite K_polar_sheet by exact Hv'. f_equal. rewrite (Hs v Hv), sqrt_0.
-      destruct (Rn v Hv) as (P & _).
-      replace (K S v r) with (sqrt (K S v r) * sqrt (K S v r)) at 3 by now apply sqrt_sqrt.
-      ring. }
-  assert (Letters : forall i j l m valley, In (i, j, l, m, valley) (letters c) ->
-    In (i, j, l) (corners (faces S)) /\ In (i, m, j) (corners (faces S)) /\ 0 < sign valley * bend S i j l m h).
-  { intros i j l m valley Hf. specialize (Fs _ Hf). unfold fold_ok in Fs. rewrite !andb_true_iff in Fs.
-    destruct Fs as (((C1 & C2) & Sg) & Far). apply is_corner_in in C1, C2.
-    split; [assumption|]. split; [assumption|].
-    apply below_R in Sg, Far. rewrite Q2R_0, signed_R, qbend_R in Sg by assumption.
-    rewrite Q2R_mult, qbend_R, slack_R in Far by assumption.
-    apply (same_sign (bend S i j l m r) _ _ _ Sg Far).
-    rewrite (bend_minus S i j l m h r).
-    replace (bend S i j l m r + bend S i j l m (minus h r) - bend S i j l m r) with
-      (bend S i j l m (minus h r)) by ring.
-    eapply Rle_trans; [apply (bend_bound S i j l m (minus h r)); assumption|].
-    apply Rmult_le_compat_l; [|assumption].
-    pose proof (face_of_corner S _ _ _ C1). pose proof (face_of_corner S _ _ _ C2).
-    apply Rmult_le_pos; [apply dot_pos|].
-    apply Rplus_le_le_0_compat; apply Rlt_le, Rdiv_lt_0_compat; lra. }
-  exists h. split; [assumption|]. split; [assumption|]. split; [|split; [|split; [assumption|]]].
-  - intros v Hv. destruct (Hn v Hv) as (_ & P).
-    assert (N : K2 S v (cone S v) h <> 0).
-    { intros Z. specialize (Vs v Hv). unfold vertex_ok in Vs. rewrite !andb_true_iff, existsb_exists in Vs.
-      destruct Vs as (_ & ([[[[i j] l] m] valley] & Hf & E)). apply Nat.eqb_eq in E. subst i.
-      destruct (Letters v j l m valley Hf) as (C1 & C2 & B).
-      apply (bent_not_flat S v j l m h C1 C2 Hv).
-      - intros B0. rewrite B0 in B. lra.
-      - apply (both_nappes_flat S v h Hv); [|assumption]. rewrite (Hs v Hv). lra. }
-    destruct P as [P|P]; [assumption|]. exfalso. apply N. destruct (pops_up v); simpl in P; lra.
-  - intros g Gr Gs Gn. symmetry. apply U. auto.
-  - intros i j l m valley Hf. now destruct (Letters i j l m valley Hf) as (_ & _ & B).
+  destruct (near_branch S pops_up r (to_plane (centre c)) (Q2R (radius2 c)) (Q2R (distance2 c)) (letters c))
+    as (h & Hr & Hs & _ & Sg & Rest).
+  - intros v Hv. now apply vertex_proved, Vs.
+  - intros v Hv. specialize (Ws v Hv). apply at_most_R in Ws. rewrite Q2R_0 in Ws.
+    unfold weight in Ws. now rewrite (qmultiplier_R d ok) in Ws.
+  - apply at_most_R in Dist. rewrite qsum_R in Dist. eapply Rle_trans; [|exact Dist]. right.
+    apply sum_ext. intros v Hv. assert (Hv' : In v (inside d ++ border d)) by (apply in_or_app; now left).
+    rewrite Q2R_mult. unfold weight, curvature. rewrite (qmultiplier_R d ok), (qK2_R d ok) by assumption.
+    now rewrite K_polar_sheet by exact Hv'.
+  - intros i j l m valley Hf. specialize (Fs _ Hf). unfold fold_ok in Fs. rewrite !andb_true_iff in Fs.
+    destruct Fs as (((C1 & C2) & Sg) & Far). apply is_corner_in in C1, C2. apply below_R in Sg, Far.
+    rewrite Q2R_0, signed_R, qbend_R in Sg by assumption.
+    rewrite Q2R_mult, qbend_R, slack_R in Far by assumption. auto.
+  - exists h. split; [assumption|]. split; [assumption|]. split; [|exact Rest].
+    intros v Hv. specialize (Vs v Hv). unfold vertex_ok in Vs. rewrite !andb_true_iff, existsb_exists in Vs.
+    destruct Vs as (_ & ([[[[i j] l] m] valley] & Hf & E)). apply Nat.eqb_eq in E. subst i.
+    exact (Sg v j l m valley Hv Hf).
 Qed.
 
 End Check.

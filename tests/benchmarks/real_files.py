@@ -5,9 +5,11 @@ python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [-
 python tests/benchmarks/real_files.py FOLDER --noise FILE [--limit SECONDS] [--only TEXT]
     [--keep FOLDER]
 
-Every file is a process of its own, ended after 60 seconds. The answers are kept below `--keep`, one
-file of JSON lines a program, so that an interrupted run goes on where it stopped. The summary at
-the end is that of docs/real_files.md; `--csv` writes a row for each file, as docs/real_files.csv.
+Every file is a process of its own, one after the other, which has 60 seconds. As the machine may
+have other work, this is its time or that of its processors, whichever is less. A file with several
+sheets has the kind of its worst sheet. The answers are kept below `--keep`, one file of JSON lines
+a program, so that an interrupted run goes on where it stopped. The summary at the end is that of
+docs/real_files.md; `--csv` writes a row for each file, as docs/real_files.csv.
 
 `--noise` finds the inexact drawings instead, and writes a row for each, as docs/real_noise.csv: the
 sheet that was meant, its answer, and that for the digits as written. Each count has the `--limit`
@@ -20,6 +22,7 @@ import argparse
 import csv
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -44,7 +47,7 @@ KINDS = (
     "defect",
 )
 REASONS = {
-    "SeveralSheetsError": "several sheets",
+    "SeveralSheetsError": "several sheets",  # by programs that count only a chosen one
     "NotADiskError": "a sheet that hangs together by a point",
     "FoldedStateError": "a folded state",
     "FoldError": "border lines between panels",
@@ -54,7 +57,6 @@ REASONS = {
 }
 REMEDIES = {
     "`--chords ": ["--chords", "4"],
-    "`exactfold count FILE --sheet all`": ["--sheet", "all"],
     "`--box`": ["--box"],
 }
 """What the message to a refused file names and nobody has to choose, with options of `count`."""
@@ -71,18 +73,24 @@ NOISE = (
 )
 """The columns of docs/real_noise.csv; lengths are shares of the size of the drawing."""
 
+BUSY = 3 * LIMIT
+"""No count takes longer, on a machine that has other work to do, too."""
 SLOWEST = 10 * LIMIT
-"""No command of `--noise` takes longer, on a machine that has other work to do, too."""
+"""No command of `--noise` takes longer on such a machine."""
 
 Line = dict[str, Any]
 
 
 def answered(
-    path: Path, source: Path, *options: str, command: str = "count", limit: float = LIMIT
+    path: Path, source: Path, *options: str, command: str = "count", limit: float = BUSY
 ) -> Line:
-    """What a command of the program below `source` answers within `limit` seconds."""
+    """What a command of the program below `source` answers, ended after `limit` seconds.
+
+    "seconds" is the time that has passed, or that of processors if this is less. "sheets" has the
+    answers to the sheets of a file with several.
+    """
     words = [sys.executable, "-m", "exactfold", command, str(path.resolve()), "--json", *options]
-    began = time.perf_counter()
+    began, used = time.perf_counter(), processors()
     try:
         done = subprocess.run(
             words,
@@ -95,18 +103,30 @@ def answered(
         )
     except subprocess.TimeoutExpired:
         return {"code": None, "seconds": limit, "result": None, "error": ""}
-    seconds = round(time.perf_counter() - began, 1)
+    seconds = min(time.perf_counter() - began, processors() - used)
     results = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
     line = {
         "code": done.returncode,
-        "seconds": seconds,
+        "seconds": round(seconds, 1),
         "result": results[0] if results else None,
         "error": done.stderr.strip(),
     }
-    if "all" in options:  # a line for each sheet
-        codes = Counter(one["exit_code"] for one in results)
-        line["sheets"] = {str(code): number for code, number in sorted(codes.items())}
+    if len(results) > 1:
+        line["sheets"] = [
+            {
+                "code": one["exit_code"],
+                "seconds": 0.0,  # of the whole file
+                "result": one["result"] or {"error": one["error"]},
+            }
+            for one in results
+        ]
     return line
+
+
+def processors() -> float:
+    """The seconds of processors that the processes which have ended used."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def known_in_part(result: Line) -> list[str]:
@@ -144,10 +164,12 @@ def remedy_of(line: Line) -> list[str]:
 
 
 def kind_of(line: Line) -> tuple[str, str]:
-    """The kind of an answer, and what it says."""
+    """The kind of an answer, and what it says; of several sheets, the kind of the worst."""
     code, result = line["code"], line["result"]
-    if code is None:
+    if code is None or line["seconds"] > LIMIT:
         return KINDS[4], ""
+    if "sheets" in line:
+        return of_sheets([kind_of(one) for one in line["sheets"]])
     if code == 3:
         return KINDS[2], refused_for(line)
     if result is None:
@@ -174,15 +196,18 @@ def kind_of(line: Line) -> tuple[str, str]:
     return (KINDS[1], "; ".join(known)) if known else (KINDS[3], "")
 
 
+def of_sheets(answers: list[tuple[str, str]]) -> tuple[str, str]:
+    """The worst kind of the sheets of a file; what is said of each if all are complete."""
+    worst = max((kind for kind, _ in answers), key=KINDS.index)
+    alike = Counter(said if worst == KINDS[0] else kind for kind, said in answers)
+    each = "; ".join(f"{number} {said}" for said, number in alike.items())
+    return worst, f"{counted(len(answers), 'sheet')}: {each}"
+
+
 def helped(line: Line) -> str:
     """The kind of the answer to a refused file with the remedy that its message names."""
     remedy = line.get("remedy")
-    if not remedy:
-        return ""
-    if "sheets" not in remedy:
-        return kind_of(remedy)[0]
-    good = sum(remedy["sheets"].get(code, 0) for code in "01")
-    return KINDS[0 if good == sum(remedy["sheets"].values()) else 1] if good else KINDS[3]
+    return kind_of(remedy)[0] if remedy else ""
 
 
 def withdrawn(before: Line, now: Line) -> bool:

@@ -94,6 +94,7 @@ def test_claims_that_grow_with_the_pattern_are_left_out() -> None:
         assert not {"branches", "vertex_signs", "assignment"} & printed["claims"].keys()
 
 
+@pytest.mark.slow
 def test_lines_of_results_are_no_evidence(tmp_path: Path) -> None:
     path = tmp_path / "r.jsonl"
     for names in ([TWO], [TWO, "flat-vertex"]):

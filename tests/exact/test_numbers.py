@@ -227,6 +227,7 @@ def test_snap_usage_error(denominator):
 
 @quick
 @given(st.lists(st.fractions(), min_size=1))
+@pytest.mark.slow
 def test_over_common_denominator(values):
     integers, denominator = over_common_denominator(values)
     assert [Fraction(n, denominator) for n in integers] == values

@@ -99,6 +99,7 @@ def test_what_lies_in_a_triangle_is_bounded_as_its_corners():
                 assert abs(there - Fraction(coords[k, vertex, axis].item())) <= 2 * radii[k]
 
 
+@pytest.mark.slow
 def test_the_motion_keeps_its_times_and_events(returned):
     motion, floats = (
         returned.motion,
@@ -198,6 +199,7 @@ def test_a_return_that_is_not_proved_writes_nothing(returned, tmp_path):
     assert not (tmp_path / "loop.txt").exists()
 
 
+@pytest.mark.slow
 def test_a_motion_until_a_fold_closes_after_a_contact_is_proved_to_its_end():
     """It does not end at the first contact, although it ends with faces on each other."""
     branch = find_branch("two-vertex", "+-")

@@ -216,6 +216,7 @@ def test_a_motion_ends_where_it_is_asked_to():
     assert (degrees.end, degrees.events[-1].kind) == ("angle", "angle")
 
 
+@pytest.mark.slow
 def test_frames_at_equal_steps_of_an_angle():
     branch = find_branch("two-vertex", "+-")
     motion = follow(branch, until="60deg", frames=7, by=(3, 5))

@@ -20,6 +20,7 @@ def branch():
     return find_branch(SHEET, "+-+")
 
 
+@pytest.mark.slow
 def test_a_motion_to_its_first_contact_is_proved_with_the_contact(branch):
     motion = follow(branch)
     proof = prove(motion)
@@ -44,6 +45,7 @@ def test_a_motion_to_an_angle_is_proved_and_clear_all_the_way(branch):
     assert Fraction(claims["clear"]) >= Fraction(motion.duration) * Fraction(99, 100)
 
 
+@pytest.mark.slow
 def test_a_motion_through_the_paper_is_proved_without_a_claim_on_contact(branch):
     first = follow(branch).duration
     proof = prove(follow(branch, until=1.05 * first, frames=3))
@@ -53,6 +55,7 @@ def test_a_motion_through_the_paper_is_proved_without_a_claim_on_contact(branch)
     assert "contact" not in checker.check(proof.certificate())
 
 
+@pytest.mark.slow
 def test_a_motion_back_to_the_flat_sheet_names_where_it_ends(branch):
     proof = prove(follow(branch, until="return", through_branch_points=True, frames=3))
     assert proof.status is PROVED

@@ -250,6 +250,7 @@ values = st.recursive(
 
 @settings(max_examples=40, deadline=None)
 @given(st.sampled_from([*SQUARE, EXACT_KEY, "file_frames"]), values, st.data())
+@pytest.mark.slow
 def test_whatever_stands_in_a_file_the_error_is_clean(key, value, data):
     document = json.loads(json.dumps(SQUARE))
     whole = data.draw(st.booleans())

@@ -55,6 +55,7 @@ def test_proposals_are_what_their_noise_level_gives(name: str, seed: int) -> Non
         assert exactfold.read(document, noise=level).sheet == sheet.sheet
 
 
+@pytest.mark.slow
 def test_a_count_tells_a_proposal_and_stays_undecided() -> None:
     found = exactfold.count(by_hand("map-fold"))
     exact = exactfold.count("map-fold")

@@ -59,6 +59,7 @@ def failed(names: Iterable[str]) -> dict[str, list[str]]:
     }
 
 
+@pytest.mark.slow
 def test_every_short_proof_holds() -> None:
     """One test for all, as each process would run them again."""
     assert failed(set(MODULES) - set(LONG)) == {}
@@ -158,6 +159,7 @@ def test_every_change_is_refused_and_every_step_refuses_one(name: str) -> None:
     assert list(never_failed.values()) == [], "steps that no deliberate mistake breaks"
 
 
+@pytest.mark.slow
 def test_is_not_proved_with_an_unknown_change() -> None:
     module = importlib.import_module(f"proofs.{MODULES[0]}")
     with pytest.raises(ValueError, match="no change"):
@@ -175,6 +177,7 @@ def test_runs_alone(
     assert "Verdict: proved" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_json_lists_every_step(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([MODULES[0], "--json"]) == 0
     (proof,) = json.loads(capsys.readouterr().out)["proofs"]
@@ -224,6 +227,7 @@ def test_formulas_with_mistakes_drawn_at_random_do_not_hold() -> None:
     assert [text for text in held if not any(part in text for part in known)] == []
 
 
+@pytest.mark.slow
 def test_a_word_or_a_sign_that_the_paper_does_not_print_is_noticed() -> None:
     digests = json.loads(QUOTATIONS.read_text(encoding="utf-8"))
     for name in ("vertex_forms", "kapovich_millson"):

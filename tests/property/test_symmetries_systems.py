@@ -86,6 +86,7 @@ def check_same(seed: int, n: int, changed: QuadraticSystem) -> None:
 
 @settings(max_examples=8, deadline=None)
 @given(seed=seeds, n=st.integers(2, 4), data=st.data())
+@pytest.mark.slow
 def test_permuted_unknowns_and_equations(seed: int, n: int, data: st.DataObject) -> None:
     system = random_system(seed, n)
     unknowns = data.draw(st.permutations(range(n)))

@@ -132,6 +132,7 @@ def test_rank_and_signature_against_descartes(size, data):
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.lists(entries, min_size=6, max_size=6), min_size=2, max_size=2))
+@pytest.mark.slow
 def test_random_conics(rows):
     matrices = [[[2 * a, b, d], [b, 2 * c, e], [d, e, 2 * f]] for a, b, c, d, e, f in rows]
     system = QuadraticSystem.from_rational(matrices)

@@ -91,6 +91,7 @@ def test_one_vertex_alone_is_never_flat():
     assert nearest_exception(count_branches(random_square(1, seed=0))) is None
 
 
+@pytest.mark.slow
 def test_measured_squares_have_distances():
     run = run_study("flat", numbers={2: 4})
     (row,) = [row for row in run.rows if row["measured"]]

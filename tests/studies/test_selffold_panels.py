@@ -11,6 +11,7 @@ from exactfold.studies import run_study, selffold_panels
 from exactfold.studies.selffold_panels import recipes, sheet_of
 
 
+@pytest.mark.slow
 def test_verdicts_are_those_of_hull_and_tachi():
     """Every generic tiling has two self-foldable ways; the other tilings have none but families."""
     run = run_study("selffold-panels", numbers={2: 10})

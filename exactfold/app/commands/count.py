@@ -103,12 +103,12 @@ class Asked(CountOptions):
     def _takes_all(self, error: SeveralSheetsError) -> bool:
         """Whether the sheets of a drawing are all counted, as none was chosen.
 
-        One JSON object and one certificate are about one sheet, and standard input is read once.
+        A certificate is about one sheet, and standard input is read once.
         """
-        return not (not error.sheets or self.as_json or self.certificate or self.pattern == STDIN)
+        return not (not error.sheets or self.certificate or self.pattern == STDIN)
 
     def _each(self, known: str) -> int:
-        """Count every sheet of the drawing, and say so."""
+        """Count every sheet of the drawing, and say so; with --json each has a line."""
         from exactfold.app.commands.several.batch import Batch
 
         say(f"{known}: each is counted, as with --sheet all; --sheet N chooses one")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, TypeVar, overload
 
-from exactfold._support.verdict import UNDECIDED
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.values.result import BranchCount
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.remembered import remembered
@@ -157,10 +157,13 @@ def _of_holes(result: Decomposition | None) -> str:
         return ""
     pattern = result.pattern
     from exactfold.panels.modes.near_misses import near_limit
-    from exactfold.panels.vertex.holes import nearly_dependent
+    from exactfold.panels.vertex.nearly import nearly_dependent, nearly_moves
     from exactfold.pattern.rounding import usual_half_step
 
     if not (step := usual_half_step(pattern.vertices)):
         return ""
     noise = None if result.meant is None else result.meant.noise
-    return nearly_dependent(pattern, near_limit(noise, len(pattern.holes)), step)
+    limit = near_limit(noise, len(pattern.holes))
+    return nearly_dependent(pattern, limit, step) or nearly_moves(
+        pattern, limit, rigid=result.rigid is PROVED
+    )

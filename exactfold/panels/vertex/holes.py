@@ -16,8 +16,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
-import numpy as np
-
 from exactfold.exact.joined_fields import joined
 from exactfold.exact.surds import Number, sign
 from exactfold.panels.vertex.stars import (
@@ -30,7 +28,6 @@ from exactfold.panels.vertex.stars import (
     stars,
 )
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
-from exactfold.pattern.rounding import size_of
 
 _AXES: Final = ((0, 1), (0, 2), (1, 2))
 
@@ -69,7 +66,7 @@ def conditions(pattern: PanelPattern, flat: Iterable[Edge] = ()) -> Mapping[int,
         moving = dict(flat_closure(pattern, gone))
         before = len(gone)
         for rim in known:
-            hole = _hole(pattern, rim, gone)
+            hole = hole_of(pattern, rim, gone)
             if hole.rank == len(hole.folds):
                 gone.update(hole.folds)
             else:
@@ -175,7 +172,8 @@ def stars_of(hole: Hole, first: int) -> Iterator[Star]:
         yield Star(place, hole.folds, directions, hole)
 
 
-def _hole(pattern: PanelPattern, rim: Rim, flat: Set[Edge]) -> Hole:
+def hole_of(pattern: PanelPattern, rim: Rim, flat: Set[Edge]) -> Hole:
+    """The lines of the folds round a hole, without the `flat` ones, and how many depend on none."""
     folds, twists = [], []
     origin = rim.vertices[0]
     for v, u in rim.crossed:
@@ -202,35 +200,6 @@ def _rank(twists: Sequence[Twist]) -> int:
         return 1
     heights = (sum((a * b for a, b in zip(normal, t, strict=True)), 0 * one[0]) for t in twists)
     return 3 if any(height != 0 for height in heights) else 2
-
-
-def nearly_dependent(pattern: PanelPattern, limit: float, step: float) -> str:
-    """A sentence on the hole whose lines are the nearest to depend on each other, but do not.
-
-    They nearly pass through one point, are nearly parallel, or nearly one line. Singular values say
-    by how much they miss that. The sentence is empty if no lines miss it by less than the limit, or
-    by less than they turn where the ends of the shortest fold move by `step`, a share of the size.
-    """
-    nearest, at = 1.0, -1
-    step *= 2 * size_of(pattern.scaled_vertices)
-    for rim in rims(pattern):
-        hole = _hole(pattern, rim, frozenset())
-        if hole.rank < 2:
-            continue
-        lines = np.array([[float(x) for x in twist] for twist in hole.twists])
-        lengths = np.hypot(lines[:, 0], lines[:, 1])
-        lines /= lengths[:, None]
-        lines[:, 2] /= max(1e-300, float(np.abs(lines[:, 2]).max()))
-        values = np.linalg.svd(lines, compute_uv=False)
-        off = float(values[hole.rank - 1] / values[0])
-        if off < min(nearest, max(limit, step / float(lengths.min()))):
-            nearest, at = off, rim.vertices[0]
-    if at < 0:
-        return ""
-    return (
-        f"the lines of the folds round the hole at vertex {at} nearly pass through one point, or "
-        f"are nearly parallel, off by {nearest:.1e}"
-    )
 
 
 def _cross(a: Twist, b: Twist) -> Twist:

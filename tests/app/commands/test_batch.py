@@ -27,9 +27,10 @@ from sheets import DENTED, scrambled
 
 from exactfold import random_square
 from exactfold.app.commands.several import batch
+from exactfold.app.commands.several.outcome import Line
 from exactfold.app.shell.shell import Bar
 from exactfold.branches import count_branches
-from exactfold.branches.counting.batch import count_many
+from exactfold.branches.counting.batch import Job, count_many
 from exactfold.branches.counting.pools import dask_pool, process_pool
 from exactfold.errors import NotFoldError, UnreadableFileError, UsageError, WorkerDiedError
 from exactfold.pattern import write_fold
@@ -139,6 +140,40 @@ def test_all_sheets_have_an_answer_each(tmp_path: Path) -> None:
     assert words.count("sheet 1") == words.count("sheet 2") == 1
 
 
+def test_without_a_choice_each_sheet_has_a_line_of_json(tmp_path: Path) -> None:
+    path = several_sheets(tmp_path / "two.cp", {1: "M", 2: ""})
+    result = run("count", path, "--json", "--jobs", 1, "--sheet", "all")
+    plain = run("count", path, "--json")
+    assert (plain.exit_code, result.exit_code) == (BAD_INPUT, BAD_INPUT)  # the worst of the sheets
+    assert "holds 2 sheets" in plain.stderr
+    lines = [json.loads(line) for line in plain.stdout.splitlines()]
+    assert sorted((line["name"], line["status"]) for line in lines) == [
+        (f"{path} sheet 1", "proved"),
+        (f"{path} sheet 2", "failed"),
+    ]
+
+
+def test_the_sheets_of_a_drawing_share_its_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    jobs: list[Job] = []
+    line_of = batch.line_of
+
+    def noted(job: Job) -> Line:
+        jobs.append(job)
+        return line_of(job)
+
+    monkeypatch.setattr(batch, "line_of", noted)
+    path, alone = several_sheets(tmp_path / "two.cp"), example_path("zigzags")
+    result = run("count", path, alone, "--sheet", "all", "--limit", 90, "--jobs", 1)
+    assert result.exit_code == 0
+    first, second, other = [job.limit for job in jobs]
+    assert 40 < first <= 45, "half of the time"
+    assert 80 < second < 90, "what the first has left"
+    assert 89 < other <= 90, "another file has a limit of its own"
+    assert [job.reading.limit for job in jobs] == [first, second, other]
+
+
 def test_a_sheet_that_is_refused_takes_no_other_with_it(tmp_path: Path) -> None:
     path = several_sheets(tmp_path / "two.cp", {1: "M", 2: ""})
     out = tmp_path / "out.jsonl"
@@ -179,7 +214,7 @@ def test_without_a_choice_the_sheets_are_listed(tmp_path: Path) -> None:
     path = several_sheets(tmp_path / "two.cp")
     listed = "sheet 1 with 1 fold, 2 x 2 at (3, 0); sheet 2 with 2 folds, 2 x 2 at (6, 0)"
     remedy = "choose one with --sheet N (`number=` in Python), or count all with"
-    result = run("count", path, "--json")
+    result = run("info", path)
     assert result.exit_code == BAD_INPUT
     assert f"the drawing holds 2 sheets ({listed}): {remedy}" in result.stderr
     every = run("count", path)
@@ -429,6 +464,7 @@ def test_a_dead_process_is_a_line_that_is_tried_again(
     assert [d["status"] for d in lines(out)] == ["failed", "proved"]
 
 
+@pytest.mark.slow
 def test_on_dask(tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     patterns = [random_square(2, seed=k) for k in range(5)]

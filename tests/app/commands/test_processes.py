@@ -155,6 +155,7 @@ def test_a_name_that_the_terminal_cannot_show(tmp_path, two_vertex):
     assert "z\\xe4hlung.json" in result.stdout
 
 
+@pytest.mark.slow
 def test_dash_is_standard_input(tmp_path, two_vertex, certificate):
     stream = tmp_path / "stream.txt"
     assert run("count", two_vertex, "--stream", stream).exit_code == PROVED

@@ -148,6 +148,7 @@ def test_such_a_branch_is_drawn_and_exported(here: Path) -> None:
     assert exported.exit_code == 0
 
 
+@pytest.mark.slow
 def test_folds_drive_a_sheet(here: Path) -> None:
     options = ["--drive", "1-5=6deg,2-6=-5", "--frames", "2", "--certificate", "c.json"]
     done = run("fold", "pentagon.fold", *options)

@@ -149,6 +149,7 @@ def test_a_count_stands_alone(name: str) -> None:
             assert abs(curvature_form(pattern, v)(heights)) < Fraction(1, 10**12)
 
 
+@pytest.mark.slow
 def test_schemas_refuse_what_is_not_documented() -> None:
     data = printed("count", "count", example_path("two-vertex"))
     for key in data:

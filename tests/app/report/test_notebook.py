@@ -106,6 +106,7 @@ def test_other_values_are_not_shown():
     assert shown(read_fold(example_path("two-vertex")), "html") is None
 
 
+@pytest.mark.slow
 def test_values_are_shown_in_a_program_that_has_not_drawn_before():
     script = (
         "import exactfold, sys\n"

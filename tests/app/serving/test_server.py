@@ -136,6 +136,7 @@ def test_other_sites_may_neither_open_nor_ask(server, site):
     assert post(server, "open", {}, **{"Sec-Fetch-Site": site})[0] == 403
 
 
+@pytest.mark.slow
 def test_a_person_may_open_the_page_but_a_post_is_of_the_page(server):
     assert page(server, headers={"Sec-Fetch-Site": "none"})[0] == 200
     assert post(server, "follow", {}, **{"Sec-Fetch-Site": "none"})[0] == 403
@@ -363,6 +364,7 @@ def test_files_that_are_no_drawings_get_a_sentence(server, name, data, said):
     assert "exactfold-" not in answer["error"]  # the name of a temporary folder
 
 
+@pytest.mark.slow
 def test_work_that_takes_too_long_is_ended_and_the_next_is_done():
     with view_server("two-vertex", frames=3, limit=0.001) as found:
         thread = threading.Thread(target=found.serve_forever, kwargs={"poll_interval": 0.02})

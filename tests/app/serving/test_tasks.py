@@ -102,6 +102,7 @@ def test_after_the_time_no_further_way_is_followed():
     assert late["text"].startswith("16 ways not followed after 0 seconds")
 
 
+@pytest.mark.slow
 def test_a_way_cannot_be_followed_before_a_sheet_is_open():
     [error] = answers(Follow(0))
     assert error["error"] == "the sheet is no longer open here: open it again"

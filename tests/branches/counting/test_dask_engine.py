@@ -124,6 +124,7 @@ def test_a_deadly_block_and_a_lost_scheduler_leave_a_file_to_resume(tmp_path: Pa
     assert resumed == "proved True"
 
 
+@pytest.mark.slow
 def test_a_local_cluster_by_command(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     fold, file = tmp_path / "p.fold", tmp_path / "c.txt"

@@ -290,6 +290,7 @@ def test_a_value_of_another_type_is_refused(name: str) -> None:
     assert tried > 300
 
 
+@pytest.mark.slow
 def test_no_malformed_entry_gets_past_the_reader(tmp_path: Path) -> None:
     """Reading trusts the claims of a branch, and raises no error of another class."""
     path, refusals = tmp_path / "c.txt", 0

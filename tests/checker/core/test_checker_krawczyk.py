@@ -88,6 +88,7 @@ def accepts(system: Quadrics, y: Matrix, center: list[int], radius: int, bits: i
     return True
 
 
+@pytest.mark.slow
 def test_the_inequalities_are_those_that_are_stated() -> None:
     """Whatever Y: for a few thousand small systems and boxes, many at the limit."""
     source, seen = random.Random(3), {True: 0, False: 0}

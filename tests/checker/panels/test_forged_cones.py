@@ -72,6 +72,7 @@ def test_a_ring_is_decided_modulo_a_prime(monkeypatch: pytest.MonkeyPatch) -> No
     refused(made, "the zeros of the forms of vertices 0, 1, 2 may be other components")
 
 
+@pytest.mark.slow
 def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     sides = panel_signs._sides
     monkeypatch.setattr(panel_signs, "_sides", lambda *args: (sides(*args)[0], False))
@@ -137,6 +138,7 @@ def test_number_of_forms(monkeypatch: pytest.MonkeyPatch) -> None:
     stopped(certified("row of stars"), message)
 
 
+@pytest.mark.slow
 def test_the_forms_that_are_left_are_compared() -> None:
     made = certified("row of stars")
     for other in ([0, 1], [0, 2, 1], []):
@@ -148,6 +150,7 @@ def test_the_forms_that_are_left_are_compared() -> None:
     refused(made, "the part of vertex 0 has other leaves than those listed")
 
 
+@pytest.mark.slow
 def test_one_family_is_all_first_order_motions_with_all_forms() -> None:
     found = spaces(two_stars())
     [leaf] = found.leaves()
@@ -177,6 +180,7 @@ TWICE = [
 """Creases on a grid of 5 x 5 points."""
 
 
+@pytest.mark.slow
 def test_a_zero_is_taken_at_which_the_folds_fold(monkeypatch: pytest.MonkeyPatch) -> None:
     """At the first zero that is found of the form of vertex 7, some folds stay flat.
 

@@ -45,6 +45,7 @@ def test_the_number_of_components_is_found_again(number: int) -> None:
     refused(made, f"the part of vertex 0 has 2 leaves of a kind, not {number}")
 
 
+@pytest.mark.slow
 def test_without_the_signs_of_roots_nothing_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(conics.Conics, "_chain", lambda *_: None)
     refused(certified(), "the zeros of the forms of vertices 0, 1, 2, 3 may be other components")

@@ -83,6 +83,7 @@ def test_creases_that_fold_together_as_drawn_while_the_others_stay_flat() -> Non
     assert (matched.starts, matched.truly) == (PROVED, PROVED)
 
 
+@pytest.mark.slow
 def test_without_letters_or_with_a_complete_answer_nothing_is_said() -> None:
     assert counted(by_letter("U")).drawn is None
     complete = exactfold.count("miura")

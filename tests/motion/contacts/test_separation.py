@@ -285,6 +285,7 @@ def test_in_the_plane_nothing_is_made_of_heights():
     assert len(left.apart) == len(left.corner) == 1
 
 
+@pytest.mark.slow
 def test_edges_through_faces_are_those_of_exact_rationals():
     rng = np.random.default_rng(3)
     seen = [0, 0]

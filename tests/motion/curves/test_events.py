@@ -128,6 +128,7 @@ def angle_of(pattern, place, coords):
     return -np.arctan2(sine, one @ two)
 
 
+@pytest.mark.slow
 def test_the_sheet_comes_back_flat():
     for n in (1, 2, 3):
         branch = find_branch(random_square(n, seed=n), "+" * n)

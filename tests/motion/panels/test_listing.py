@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from sheets import DENTED, scrambled
 
 import exactfold
@@ -18,6 +19,7 @@ def counted() -> Decomposition:
     return found
 
 
+@pytest.mark.slow
 def test_a_space_that_is_found_again_in_another_field_is_one_way() -> None:
     found = counted()
     (part,) = found.parts
@@ -27,6 +29,7 @@ def test_a_space_that_is_found_again_in_another_field_is_one_way() -> None:
     assert [way.verdict for way in panel_ways(found)] == [PROVED, PROVED]
 
 
+@pytest.mark.slow
 def test_of_several_components_of_a_space_none_folds_because_one_was_found() -> None:
     found = counted()
     (part,) = found.parts

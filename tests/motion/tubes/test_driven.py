@@ -194,6 +194,7 @@ def test_a_ratio_that_is_not_met() -> None:
         follow(find_branch(PENTAGON, "+-"), drive=PrescribedAngles.of({(0, 6): 3, (2, 6): 3}))
 
 
+@pytest.mark.slow
 def test_at_a_dead_point_the_drive_ends() -> None:
     """Fold 0-5 closes at the vertex with four folds, so that those at the next cannot go on."""
     motion = along(find_driven(PENTAGON, {(2, 6): 150, (3, 6): 170}), frames=20)

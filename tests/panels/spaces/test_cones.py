@@ -110,6 +110,7 @@ def test_one_family_needs_all_conditions() -> None:
     assert not is_one_family(moving, size + 1, size + 1, [0, 1])  # one condition depends on others
 
 
+@pytest.mark.slow
 def test_both_signs_of_the_discriminant_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a negative one the zeros of the second form could be two sheets over the first."""
     sides = cones._sides

@@ -256,6 +256,7 @@ def _without_real_zeros(pattern: PanelPattern) -> int:
     return count
 
 
+@pytest.mark.slow
 def test_forms_without_common_zeros_on_one_of_two_spaces(monkeypatch: pytest.MonkeyPatch) -> None:
     sheet = ring(9, (4, 5, 5))
     result = decompose(sheet)

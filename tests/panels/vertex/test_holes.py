@@ -13,7 +13,8 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.errors import MalformedPatternError, NotADiskError, NotCountedError
 from exactfold.panels import decompose
 from exactfold.panels.spaces.kernel import first_order
-from exactfold.panels.vertex.holes import conditions, free_folds, nearly_dependent, restricted, rims
+from exactfold.panels.vertex.holes import conditions, free_folds, restricted, rims
+from exactfold.panels.vertex.nearly import nearly_dependent, nearly_moves
 from exactfold.panels.vertex.stars import stars
 from exactfold.pattern.panel_pattern import PanelPattern
 
@@ -253,6 +254,18 @@ def test_rounded_lines_round_a_hole_prove_nothing():
     assert result.status is UNDECIDED
     assert "nearly pass through one point" in result.reason
     assert dict(result.as_written.true) == {1: 1}  # with the digit that was meant, {1: 2}
+
+
+@pytest.mark.parametrize(("below", "said"), [("0.0001", True), ("0.5", False)])
+def test_folds_that_nearly_span_half_a_plane_nearly_move(below, said):
+    """A vertex whose folds all point downwards is rigid; on a line with it, two of them fold."""
+    low = -Fraction(below)
+    points = [(0, 0), (4, low), (-4, low), (-1, -4), (2, -4), (0, 4)]
+    edges = [*pairwise([1, 5, 2, 3, 4, 1]), (0, 1), (0, 2), (0, 3), (0, 4)]
+    sheet = PanelPattern(points, edges)
+    assert decompose(sheet).rigid is PROVED
+    assert ("nearly start to fold" in nearly_moves(sheet, 1e-3, rigid=True)) is said
+    assert nearly_moves(sheet, 1e-3, rigid=False) == ""
 
 
 # --- refusals ------------------------------------------------------------------------------------

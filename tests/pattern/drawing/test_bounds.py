@@ -230,6 +230,7 @@ def test_texts(tmp_path):
         read_text(tmp_path / "b.txt")
 
 
+@pytest.mark.slow
 def test_straight_runs_through_a_vertex_of_many_lines():
     """Each of 3,000 spokes continues the one opposite, whichever are compared at once."""
     number = 3000

@@ -4,10 +4,13 @@ import json
 import random
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 from drawings import svg
 
+from exactfold import count
+from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.errors import (
     DisconnectedError,
     FoldError,
@@ -20,6 +23,7 @@ from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.cutting import pieces
 from exactfold.pattern.drawing.drawing import Drawing, Line
 from exactfold.pattern.drawing.formats.svg import read_svg
+from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.opening import from_drawing, open_pattern, panels
 from exactfold.pattern.reading import Reading
 
@@ -77,6 +81,35 @@ def test_the_two_sides_of_a_slit_fold_differently():
     sheet = opened(*lines).sheet
     assert shape(sheet) == (0, 5, 6)
     assert len(sheet.vertices) == 4 + 4 + 1 + 4 + 1  # the slit has two more ends and middles
+
+
+def popup(off="0"):
+    """A book with cuts across its middle, whose strips fold out; its first hinge is `off`."""
+    left, middle, right = (k + Fraction("0.03125") for k in (1, 2, 3))
+    places = [Fraction("0.53125") + k * Fraction("0.46875") for k in range(6)]
+    lines = square(0, 0, 4)
+    for low, high in pairwise(places):
+        lines += [(x, low, x, high, "M" if x == middle else "V") for x in (left, middle, right)]
+    lines += [(left, y, right, y, "C") for y in places]
+    first = middle + Fraction(off)
+    return [*lines, (first, 0, first, places[0], "V"), (middle, places[-1], middle, 4, "V")]
+
+
+def test_edges_that_opening_made_nearly_straight_are_no_noise():
+    """Creases end at the same distance from a slit, and corners of panels do not."""
+    found = opened(*popup())
+    assert {near.kind for near in left_relations(found.sheet)} == {"border"}
+    assert found.left == ()
+    assert count(found).status is PROVED
+
+
+def test_a_book_whose_two_hinges_are_nearly_on_one_line_is_not_called_rigid():
+    """No hole shows it: the lines round each are parallel all the same."""
+    near = count(opened(*popup("0.0005")))
+    assert near.status is UNDECIDED
+    assert "two folds between the same panels are nearly on one line" in near.reason
+    assert near.as_written.rigid is PROVED
+    assert count(opened(*popup("0.25"))).rigid is PROVED
 
 
 def test_a_cut_across_makes_two_sheets():

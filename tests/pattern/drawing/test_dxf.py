@@ -190,6 +190,7 @@ def test_damaged_files_are_refused(text: str, message: str) -> None:
         read_dxf(text)
 
 
+@pytest.mark.slow
 def test_blocks_in_blocks_have_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     def doubling(document, space) -> None:
         document.blocks.new("b0").add_line((0, 0), (1, 1))

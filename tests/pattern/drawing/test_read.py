@@ -132,6 +132,7 @@ def test_a_file_that_is_not_there(tmp_path):
 
 @settings(max_examples=300, deadline=None)
 @given(st.sampled_from([*WRITERS]), st.data())
+@pytest.mark.slow
 def test_a_damaged_file_is_read_or_refused_but_never_a_traceback(ending, data):
     text = WRITERS[ending](SQUARE)
     start = data.draw(st.integers(0, len(text)))

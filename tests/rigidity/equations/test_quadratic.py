@@ -39,6 +39,7 @@ patient = settings(max_examples=40, deadline=None, suppress_health_check=[Health
 
 @patient
 @given(pairs, points)
+@pytest.mark.slow
 def test_from_rational_is_primitive_and_keeps_the_forms(matrices, x):
     system = QuadraticSystem.from_rational(matrices)
     for matrix, primitive, value in zip(
@@ -54,6 +55,7 @@ def test_from_rational_is_primitive_and_keeps_the_forms(matrices, x):
 
 @patient
 @given(pairs, st.fractions(min_value=Fraction(1, 50), max_value=50))
+@pytest.mark.slow
 def test_positive_scaling_changes_nothing(matrices, scale):
     scaled = [[[scale * a for a in row] for row in m] for m in matrices]
     assert QuadraticSystem.from_rational(scaled) == QuadraticSystem.from_rational(matrices)

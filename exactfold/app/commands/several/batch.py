@@ -6,11 +6,12 @@ import json
 from collections import Counter
 from collections.abc import Generator, Iterator
 from contextlib import ExitStack, closing, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from exactfold._support.clock import Clock
 from exactfold._support.memory import is_shortage, shortage
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -54,11 +55,15 @@ _WORST = (0, 4, 1, 2, 3, NO_MEMORY, INTERNAL)
 
 @dataclass(frozen=True)
 class Part:
-    """A pattern, or one sheet of it, and how it is read."""
+    """A pattern, or one sheet of it, and how it is read.
+
+    So many sheets of the pattern are counted from this one on: `left`.
+    """
 
     name: str
     path: Path
     reading: Reading
+    left: int = 1
 
 
 @dataclass
@@ -149,7 +154,12 @@ class Batch(CountOptions):
                     parts.append(Part(str(path), path, base))
                 else:
                     parts += [
-                        Part(f"{path} sheet {number}", path, self.reading_sheet(number))
+                        Part(
+                            f"{path} sheet {number}",
+                            path,
+                            self.reading_sheet(number),
+                            several + 1 - number,
+                        )
                         for number in range(1, several + 1)
                     ]
         return parts
@@ -161,9 +171,12 @@ class Batch(CountOptions):
         bar = Bar("reading")
 
         def jobs() -> Iterator[Job]:
+            clocks: dict[Path, Clock] = {}
             for part in self._parts:
                 source = _source(part.path)
-                job = Job(part.name, source, self.method, self.seed, part.reading, self.limit)
+                limit = self._share(clocks.setdefault(part.path, Clock(self.limit)), part.left)
+                reading = replace(part.reading, limit=limit)
+                job = Job(part.name, source, self.method, self.seed, reading, limit)
                 earlier_line = known.take(job, names)
                 if earlier_line is None:
                     yield job
@@ -182,10 +195,22 @@ class Batch(CountOptions):
                 tally.add(line)
                 progress()
 
+    def _share(self, clock: Clock, sheets: int) -> float | None:
+        """The seconds for the first of the sheets of a pattern that share what the clock has left.
+
+        As many sheets as there are processes are counted at once.
+        """
+        if sheets == 1 or clock.left is None:
+            return clock.left
+        return clock.left * min(1.0, self._processes / sheets)
+
+    @property
+    def _processes(self) -> int:
+        return min(self.jobs or available_cores(), len(self._parts))
+
     @contextmanager
     def _pool(self) -> Iterator[Pool]:
-        jobs = self.jobs or available_cores()
-        ready = nullcontext(process_pool(min(jobs, len(self._parts))))
+        ready = nullcontext(process_pool(self._processes))
         with ready if self.dask is None else dask_pool(self.dask, self.jobs) as pool:
             yield pool
 

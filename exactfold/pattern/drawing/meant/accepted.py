@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from exactfold.pattern.drawing.meant.drawn import Drawn, gathered
-from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, is_rare
+from exactfold.pattern.drawing.meant.noise import LOOKED_FOR, TOLERANCE, is_rare
 from exactfold.pattern.drawing.meant.system import System
 from exactfold.pattern.drawing.meant.values import Edge, Relation
 
@@ -68,17 +68,29 @@ class Accepted:
         """Accepts what was found, as far as chance hardly finds so much.
 
         The trials stand with the surest first. Relations are accepted up to the last trial by which
-        chance explains few of those found (`is_rare`). The same holds for those that are
-        satisfied exactly, but for these chance has to hit the last digit. Relations that follow
-        from others are left out.
+        chance explains few of those found (`is_rare`). The same holds for those that are missed
+        by no more than the noise, which chance finds less often; as this is a second look at
+        them, chance counts twice. And it holds for those that are satisfied exactly, for which
+        chance has to hit the last digit. Relations that follow from others are left out.
         """
-        sharper = min(1.0, self.floor / self.tolerance)
+        exactly = min(1.0, self.floor / self.tolerance)
         last = self._last([(p, r is not None) for p, r in trials])
-        last_exact = self._last([(sharper * p, _is_exact(r)) for p, r in trials])
+        looks = [(p if p == 1 else 2 * p / TOLERANCE, self._is_close(r)) for p, r in trials]
+        last_close = self._last(looks)
+        last_exact = self._last([(exactly * p, _is_exact(r)) for p, r in trials])
         for number, (_, relation) in enumerate(trials, 1):
-            believed = number <= (max(last, last_exact) if _is_exact(relation) else last)
-            if relation and believed and not self.is_implied(relation.terms, relation.parts):
+            if relation is None:
+                continue
+            believed = number <= max(
+                last,
+                last_close if self._is_close(relation) else 0,
+                last_exact if _is_exact(relation) else 0,
+            )
+            if believed and not self.is_implied(relation.terms, relation.parts):
                 self.add([relation])
+
+    def _is_close(self, relation: Relation | None) -> bool:
+        return relation is not None and relation.defect <= self.tolerance / TOLERANCE
 
     def _last(self, trials: Sequence[tuple[float, bool]]) -> int:
         """How many trials there are up to the last one by which chance explains few of the hits."""

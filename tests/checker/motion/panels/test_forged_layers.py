@@ -112,6 +112,7 @@ def test_any_piece_may_be_the_first() -> None:
                     claim.check(folding)
 
 
+@pytest.mark.slow
 def test_pieces_in_another_order() -> None:
     """Each pair alone is stopped, in a stack and where pieces share folds and corners."""
     for document in (whole("fish-base", 2), whole()):

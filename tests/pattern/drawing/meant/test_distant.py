@@ -10,7 +10,11 @@ from math import cos, pi, sin
 import pytest
 
 from exactfold.pattern.drawing.drawing import Drawing, Line
+from exactfold.pattern.drawing.meant.accepted import Accepted, Trial
+from exactfold.pattern.drawing.meant.drawn import Drawn
 from exactfold.pattern.drawing.meant.inference import Inference, infer
+from exactfold.pattern.drawing.meant.noise import TOLERANCE
+from exactfold.pattern.drawing.meant.values import Relation
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.opening import from_drawing
 from exactfold.pattern.panel_pattern import PanelPattern
@@ -180,3 +184,19 @@ def test_noise_put_back_on_shipped_sheets_changes_no_local_relation(name: str) -
     assert local[0]
     assert all(names == local[0] for names in local)
     assert len({inference.unit for inference in found}) == 1
+
+
+@pytest.mark.parametrize(("missed", "believed"), [(1.0, 20), (1.5, 0)])
+def test_what_is_missed_by_no_more_than_the_noise_is_believed_earlier(
+    missed: float, believed: int
+) -> None:
+    """Chance puts 1 of 350 within ten times the noise, which is too many; 1 of 3,500 within it."""
+    edges = [(2 * k, 2 * k + 1) for k in range(22)]
+    points = [(Fraction(x), Fraction(k)) for k in range(22) for x in (0, 1)]
+    accepted = Accepted(Drawn(points, tuple(edges), frozenset()), TOLERANCE * 1e-5, 1e-9)
+    found = [
+        Relation("parallel", f"parallel@{k}", ((edge, 1), (edges[0], -1)), 1, missed * 1e-5)
+        for k, edge in enumerate(edges[1:21])
+    ]
+    accepted.believe([Trial(1 / 350, relation) for relation in [*found, None]])
+    assert len(accepted.relations) == believed

@@ -1,0 +1,211 @@
+"""The program that is extracted from the formal proof, compared with the checker in Python."""
+
+import json
+import random
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from compact_files import Lines, bodies, chained, listed_exactly, put, raw
+
+from exactfold import checker
+
+ROOT = Path(__file__).parent.parent.parent
+SOURCES = ROOT / "proofs" / "formal" / "verify"
+CERTIFICATES = ROOT / "tests" / "fixtures" / "certificates"
+COMPACT = sorted(CERTIFICATES.glob("compact-*.txt"))
+BRANCHES = sorted(CERTIFICATES.glob("branch-*.json"))
+CONVEX = CERTIFICATES / "compact-convex.txt"
+RANDOM = CERTIFICATES / "branch-random.json"
+OUT_OF_SCOPE = (
+    "only version 1 of",
+    "triangulated triangles, which are not in the scope",
+    "is reflex: the formal proof is about convex sheets",
+    "heights with positive curvatures are verified here",
+)
+"""Why a certificate that the checker in Python verifies is refused here."""
+
+
+def run(program: Path, certificate: Path) -> tuple[int, str]:
+    done = subprocess.run([program, certificate], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def valid(path: Path) -> dict[str, Any] | None:
+    """The claims that the checker in Python verifies, if it does."""
+    try:
+        return dict(checker.verify(str(path)))
+    except (checker.CertificateError, checker.FormatError):
+        return None
+
+
+def test_the_page_says_how_long_what_has_to_be_believed_is() -> None:
+    page = (ROOT / "docs" / "formal.md").read_text(encoding="utf-8")
+    said = re.search(r"`reading\.ml` and `main\.ml`, some (\d+) lines", page)
+    assert said is not None
+    names = ("reading.ml", "main.ml")
+    lines = sum(len((SOURCES / n).read_text(encoding="utf-8").splitlines()) for n in names)
+    assert abs(lines - int(said[1])) < 20
+
+
+@pytest.mark.slow
+def test_both_checkers_agree_on_every_fixture(verifier: Path) -> None:
+    accepted = []
+    for path in (*COMPACT, *BRANCHES):
+        code, text = run(verifier, path)
+        claims = valid(path)
+        assert claims is not None, path.name
+        if code == 0:
+            accepted.append(path.name)
+            assert claims["sha256"] in text
+            if path in COMPACT:
+                assert f"exactly {claims['distinct']} branches" in text
+        else:
+            assert code == 3, (path.name, text)
+            assert any(reason in text for reason in OUT_OF_SCOPE), (path.name, text)
+    assert len(accepted) >= 12
+
+
+def compact_forgeries() -> dict[str, Callable[[Lines], object]]:
+    """Changes of `compact-convex`, whose digests are made anew, with what is said of each."""
+
+    def letters(lines: Lines) -> None:
+        folds = raw(lines[1], "folds")
+        folds[0] ^= 1
+        put(lines[1], "folds", folds)
+
+    def swapped(lines: Lines) -> None:
+        centers, size = raw(lines[1], "centers"), 4 * lines[1]["width"]
+        put(lines[1], "centers", centers[size : 2 * size] + centers[:size] + centers[2 * size :])
+
+    def face(lines: Lines) -> None:
+        lines[0]["pattern"]["triangles"][0].reverse()
+
+    def moved(lines: Lines) -> None:
+        lines[0]["pattern"]["vertices"][-1][0] = "1/3"
+
+    def claim(**changes: object) -> Callable[[Lines], object]:
+        return lambda lines: lines[-1]["claims"].update(changes)
+
+    return {
+        "not verified": letters,
+        "not verified; the last one": swapped,
+        "does not run counter-clockwise": face,
+        "not verified; the last": moved,
+        'the claim "sha256" is': claim(sha256="0" * 64),
+        'the claim "distinct" is 15': claim(distinct=15),
+        'the claim "real" is 15': claim(real=15),
+        'the claim "with_multiplicity" is 32': claim(with_multiplicity=32),
+        'the claim "nonreal" is 1': claim(nonreal=1),
+        'the claim "interior" is 5': claim(interior=5),
+        'the claim "boundary" is 5': claim(boundary=5),
+        'the claim "folds" is 12': claim(folds=12),
+        'the claim "degrees_of_freedom" is 2': claim(degrees_of_freedom=2),
+        'the claim "true_branches" is': claim(true_branches="refuted"),
+        "has another length": lambda lines: put(lines[1], "radii", raw(lines[1], "radii")[1:]),
+        "the number of blocks is wrong": lambda lines: lines.pop(1),
+        "UNFINISHED": lambda lines: lines.pop(),
+        "block 0 has open roots": lambda lines: lines[1]["open"].append([0, "hard"]),
+        "block 0 is expected": lambda lines: lines[1].update(block=1),
+        'the key "more" is not known': lambda lines: lines[1].update(more=1),
+        "has another number of letters": lambda lines: listed_exactly(lines, assignment="M"),
+        "has a fold with the letter X": lambda lines: listed_exactly(lines, assignment="X" * 13),
+        "has another number of heights": lambda lines: listed_exactly(lines, center=["1"]),
+        "a face has a vertex that is not there": lambda lines: lines[0]["pattern"]["triangles"][
+            0
+        ].__setitem__(0, 99),
+    }
+
+
+@pytest.mark.slow
+def test_forged_certificates_of_all_branches_are_refused(verifier: Path, tmp_path: Path) -> None:
+    assert run(verifier, CONVEX)[0] == 0
+    for said, change in compact_forgeries().items():
+        lines = bodies(CONVEX.read_bytes())
+        change(lines)
+        path = tmp_path / "forged.txt"
+        path.write_bytes(chained(lines))
+        code, text = run(verifier, path)
+        assert code in (1, 3), said
+        assert said.partition(";")[0] in text, text
+        assert valid(path) is None, said
+    altered = tmp_path / "altered.txt"
+    altered.write_bytes(CONVEX.read_bytes().replace(b'"distinct":16', b'"distinct":17'))
+    code, text = run(verifier, altered)
+    assert (code, "line 3 is cut off or was altered" in text) == (1, True)
+
+
+@pytest.mark.slow
+def test_forged_certificates_of_one_branch_are_refused(verifier: Path, tmp_path: Path) -> None:
+    given = json.loads(RANDOM.read_text(encoding="utf-8"))
+    letters = given["claims"]["assignment"]
+    other = letters.translate(str.maketrans("MV", "VM"))
+    changes: list[tuple[str, str, Any]] = [
+        ("claims", "assignment", other[:1] + letters[1:]),
+        ("claims", "assignment", letters[1:]),
+        ("claims", "vertex_signs", [-s for s in given["claims"]["vertex_signs"]]),
+        ("claims", "vertex_signs", given["claims"]["vertex_signs"][1:]),
+        ("claims", "vertex_signs", [0, *given["claims"]["vertex_signs"][1:]]),
+        ("evidence", "heights", given["evidence"]["heights"][1:]),
+        ("evidence", "heights", ["1", *given["evidence"]["heights"][1:]]),
+        ("pattern", "triangles", given["pattern"]["triangles"][1:]),
+        ("pattern", "triangles", given["pattern"]["triangles"] * 2),
+    ]
+    for part, key, value in changes:
+        forged = given | {part: given[part] | {key: value}}
+        path = tmp_path / "forged.json"
+        path.write_text(json.dumps(forged), encoding="utf-8")
+        code, text = run(verifier, path)
+        assert code in (1, 3), (key, text)
+        assert "VERIFIED" not in text
+        assert valid(path) is None, key
+
+
+def check_mutations(verifier: Path, path: Path, count: int, seed: int) -> None:
+    """A changed letter is refused; changed digits of heights change nothing that is proved."""
+    rng = random.Random(seed)
+    whole = bodies(CONVEX.read_bytes())
+    shown = run(verifier, CONVEX)[1]
+    folds = len(raw(whole[1], "folds"))
+    lines_of = re.compile(r"root (\d+)|not verified")
+    for _ in range(count):
+        lines = bodies(CONVEX.read_bytes())
+        if rng.random() < 0.5:
+            data = raw(lines[1], "folds")
+            place = rng.randrange(folds)
+            data[place] ^= 1 << rng.randrange(8 if place % 2 == 0 else 5)
+            put(lines[1], "folds", data)
+            wrong = True
+        else:
+            data = raw(lines[1], "centers")
+            data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
+            put(lines[1], "centers", data)
+            wrong = False
+        path.write_bytes(chained(lines))
+        code, text = run(verifier, path)
+        if wrong or code:
+            assert code == 1, text
+            assert lines_of.search(text)
+        else:
+            assert text == shown
+
+
+@pytest.mark.slow
+def test_changed_letters_and_heights(verifier: Path, tmp_path: Path) -> None:
+    check_mutations(verifier, tmp_path / "changed.txt", 100, seed=1)
+
+
+@pytest.mark.survey
+def test_two_thousand_changed_letters_and_heights(verifier: Path, tmp_path: Path) -> None:
+    check_mutations(verifier, tmp_path / "changed.txt", 2000, seed=2)
+
+
+@pytest.mark.slow
+def test_help_and_bad_arguments(verifier: Path, tmp_path: Path) -> None:
+    assert subprocess.run([verifier, "--help"], capture_output=True, check=False).returncode == 0
+    assert subprocess.run([verifier], capture_output=True, check=False).returncode == 2
+    code, text = run(verifier, tmp_path / "missing.json")
+    assert (code, "No such file" in text) == (3, True)
