@@ -14,7 +14,7 @@ from exactfold.app.pictures.folded import Amount, folded
 from exactfold.app.pictures.svg import element, number, picture, text
 from exactfold.app.report import motion_animation, motion_stills
 from exactfold.app.report.flat import reasons
-from exactfold.motion import follow_panels
+from exactfold.motion import follow_panels, roll
 from exactfold.pattern import CreasePattern
 
 FOLDER = Path(__file__).with_name("pictures")
@@ -42,6 +42,8 @@ def pictures() -> dict[str, str]:
     others = {"folding.svg": folding(), "rim.svg": rim(), "rim-path.svg": rim_path()}
     turning = directions_plot(count("waterbomb-cell", direction="all"), "waterbomb-cell", 2)
     others["waterbomb-directions.svg"] = turning
+    rolling = roll("waterbomb-cell", (1, 2), way=2)
+    others["waterbomb-rolling.svg"] = motion_stills(rolling, 4, "waterbomb-cell, way 2")
     return branches | panels | drawings() | folded_flat() | others
 
 

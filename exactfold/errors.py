@@ -225,6 +225,14 @@ class DisconnectedError(NotADiskError):
     """There are two or more separate sheets."""
 
 
+class StuckPlatesError(PatternError):
+    """Panels of this thickness cannot be made of a sheet, or stop it in the flat state.
+
+    They would meet at a fold as soon as it turns, or nothing is left of a panel that is cut back
+    from its folds.
+    """
+
+
 class NotPeriodicError(PatternError):
     """The faces of a cell and their translates do not cover the plane, each point once.
 

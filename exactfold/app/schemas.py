@@ -76,6 +76,7 @@ DOCUMENTS: Final = {
         "exactfold fold --json",
         "motion.curves.motion_document:MotionDocument",
         "motion.curves.motion_document:PanelMotionDocument",
+        "motion.curves.motion_document:RollingMotionDocument",
     ),
     "motions": ("exactfold motions --json", "motion.loops.matching:LoopsDocument"),
     "view": ("the document inside a page of exactfold view", "app.viewer.document:ViewDocument"),

@@ -7,6 +7,7 @@ from exactfold.motion.curves.events import Event as Event
 from exactfold.motion.curves.framework import Framework as Framework
 from exactfold.motion.curves.motion import Motion as Motion
 from exactfold.motion.curves.start import Start as Start
+from exactfold.motion.curves.stops import Stops as Stops
 from exactfold.motion.following import follow as follow
 from exactfold.motion.loops.configuration_graph import ConfigurationGraph as ConfigurationGraph
 from exactfold.motion.loops.matching import Loops as Loops
@@ -24,8 +25,11 @@ from exactfold.motion.panels.listing import panel_ways as panel_ways
 from exactfold.motion.panels.motion import PanelMotion as PanelMotion
 from exactfold.motion.panels.proving import PanelProof as PanelProof
 from exactfold.motion.panels.proving import prove_panels as prove_panels
+from exactfold.motion.periodic.rolling import RollingMotion as RollingMotion
+from exactfold.motion.periodic.rolling import roll as roll
 from exactfold.motion.proving import MotionProof as MotionProof
 from exactfold.motion.proving import prove as prove
+from exactfold.motion.solid.plates import Solid as Solid
 from exactfold.motion.tubes.driven import Driven as Driven
 from exactfold.motion.tubes.driven import find_driven as find_driven
 from exactfold.motion.tubes.links import Link as Link

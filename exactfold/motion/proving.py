@@ -208,6 +208,7 @@ class MotionProof:
             else self._branch_point_dict(self.branch_point),
             "reached": self.reached,
             "to": None if loop is None or loop.target is None else loop.target.to_dict(),
+            "stop": None,
         }
 
     def _time_of(self, branch_point: Passage) -> Interval:

@@ -61,6 +61,9 @@ CELL = exactfold.pattern.read_cell("yoshimura-cell")
 ROLLED = exactfold.branches.count_periodic(CELL, (1, 2))
 TURNED = exactfold.branches.count_directions("waterbomb-cell")
 PANEL_CELL = exactfold.panels.count_panel_cell("miura-cell")
+ROLLING = exactfold.motion.roll(
+    "waterbomb-cell", (1, 2), way=2, cells=(1, 2), until="20deg", frames=2
+)
 LINE = exactfold.branches.AlgebraicLine((-2, 0, 1), (Fraction(1), Fraction(2)), ((Fraction(0),),))
 OPENED = exactfold.pattern.open_pattern(exactfold.pattern.data.example_path("zigzags"))
 PIECES = exactfold.branches.find_connected_components(
@@ -86,6 +89,8 @@ TRACK = exactfold.motion.follow_proved(LEAVING, until=0.3)
 LOOPS = exactfold.motion.find_loops(ONE)
 FLAT_FOLDABLE = exactfold.panels.decompose(panels(single_vertex(4)))
 PROVING = {
+    "plates": exactfold.motion.Solid(Fraction(1, 5), "middle", Fraction(1, 4)),
+    "stops": exactfold.motion.Stops(Fraction(90), {(0, 4): Fraction(30)}),
     "motion of panels": exactfold.motion.follow_panels(FLAT_FOLDABLE, frames=3),
     "clearance of panels": exactfold.motion.prove_contacts(
         exactfold.motion.follow_panels(FLAT_FOLDABLE, until="20deg", frames=2)
@@ -153,6 +158,7 @@ VALUES = {
     "periodic count": ROLLED,
     "periodic branch": ROLLED[0],
     "all directions": TURNED,
+    "rolling motion": ROLLING,
     "tessellation of panels": PANEL_CELL,
     "periodic motion": PANEL_CELL[0],
     "part of a periodic motion": PANEL_CELL[0].parts[0],

@@ -236,6 +236,7 @@ def test_no_public_function_that_takes_a_pattern_is_missing():
         "branches.PeriodicCount",
         "branches.DirectionsCount",
         "panels.PanelCell",
+        "motion.RollingMotion",
         "motion.Loops",
         "motion.PanelMode",
         "motion.PanelMotion",

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import also_found
+from exactfold.app.commands.cells import asked_cell
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.driving import driven_angles
 from exactfold.app.options.motions import FoldOptions
 from exactfold.app.pictures.film import FILMS, checked_encoder, checked_film, write_film
 from exactfold.app.pictures.picture_files import checked_picture, write_picture
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
+from exactfold.app.shell.patterns import in_doubt, located, read_any, tell_doubt, verdict
 from exactfold.app.shell.shell import EXIT, Bar, name_of, say
 from exactfold.app.verbs.choosing import choose
 from exactfold.app.verbs.chosen import ChosenBranch, ChosenPanels
@@ -27,13 +28,14 @@ from exactfold.motion.curves.motion import Motion
 from exactfold.motion.following import Goal
 from exactfold.motion.writing import ENDINGS, write_motion
 from exactfold.pattern.crease_pattern import CreasePattern
-from exactfold.pattern.opening import Opened, has_branches
+from exactfold.pattern.opening import Opened, has_branches, is_cell_file
 from exactfold.pattern.writing.fold_writing import checked_target, require_folder
 
 if TYPE_CHECKING:  # following branches does not need it
     from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.motion.panels.proving import PanelProof
+    from exactfold.motion.periodic.rolling import RollingMotion
     from exactfold.motion.proving import MotionProof
 
 
@@ -58,6 +60,8 @@ class Wanted(FoldOptions):
         from exactfold.app import report
 
         self._check_outputs()  # before the work
+        if self.direction is not None or is_cell_file(located(self.file)):
+            return self._rolling()
         with Bar("reading") as bar:
             opened = read_any(self.file, self.reading, verbose=self.verbose)
             chosen = self._chosen(opened, bar)
@@ -88,6 +92,49 @@ class Wanted(FoldOptions):
             return EXIT[motion.branch.status]
         unproved = UNDECIDED if self.certificate is not None else PROVED
         return EXIT[verdict(opened, unproved if proof is None else proof.status)]
+
+    def _rolling(self) -> int:
+        """Follow a periodic sheet, shown as a patch of cells."""
+        from exactfold.app import report
+        from exactfold.motion.periodic.rolling import CELLS, roll
+
+        if self.direction is None:
+            raise UsageError(
+                f"{self.file} is the cell of a periodic sheet: give --direction X,Y, across which "
+                "it rolls up, and --way N of `count --direction`"
+            )
+        if self.certificate is not None:
+            raise UsageError("motions of periodic sheets are followed in floats: no --certificate")
+        for option, value in (
+            ("--letters", self.letters),
+            ("--by", self.by),
+            ("--side", self.side),
+            ("--thickness", self.thickness),
+            ("--stop", self.stop or None),
+        ):
+            if value is not None:
+                raise UsageError(
+                    f"{option} does not go with --direction; a way is named by --way N"
+                )
+        self._refuse_branches()
+        with Bar("reading") as bar:
+            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            motion = roll(
+                cell,
+                self.direction,
+                way=self.way or 1,
+                cells=self.patch or CELLS,
+                until=self.until,
+                frames=self.frames,
+                progress=bar,
+            )
+            bar("writing")
+            written = self._files(motion)
+        if self.as_json:
+            print(json.dumps(motion.to_dict(name_of(self.file), written)))
+        else:
+            report.show(report.motion_report(motion, written))
+        return EXIT[motion.counted.status]
 
     @property
     def _is_film(self) -> bool:
@@ -141,6 +188,8 @@ class Wanted(FoldOptions):
             by=self.by,
             through_branch_points=self.through_branch_points,
             held=held,
+            solid=self.solid,
+            stops=self.stop,
             progress=bar,
         )
 
@@ -150,7 +199,14 @@ class Wanted(FoldOptions):
         if warning is not None:
             say(f"warning: {warning}")
         bar("following")
-        return along_panels(chosen, until=self.until, frames=self.frames, by=self.by)
+        return along_panels(
+            chosen,
+            until=self.until,
+            frames=self.frames,
+            by=self.by,
+            solid=self.solid,
+            stops=self.stop,
+        )
 
     def _refuse_branches(self) -> None:
         """Raise `UsageError` for an option that only branches have."""
@@ -224,6 +280,19 @@ class Wanted(FoldOptions):
         proof: MotionProof | PanelProof | None,
         opened: Opened,
     ) -> list[str]:
+        written = self._files(motion)
+        if self.certificate is not None and proof is None:
+            if self._beginning(opened, motion, self.certificate):
+                written.append(str(self.certificate))
+        elif self.certificate is not None and proof is not None:
+            if proof.write(self.certificate):
+                written.append(str(self.certificate))
+            else:
+                say(f"no certificate was written: {proof.reason}")
+        return written
+
+    def _files(self, motion: Motion | PanelMotion | FamilyMotion | RollingMotion) -> list[str]:
+        """Write the frames and pictures that were asked for."""
         from exactfold.app import report
 
         title, written = self._title or "", []
@@ -239,12 +308,4 @@ class Wanted(FoldOptions):
             name = f"{title}, {motion.name}" if title else motion.name
             write_picture(report.motion_stills(motion, title=name), self.picture)
             written.append(str(self.picture))
-        if self.certificate is not None and proof is None:
-            if self._beginning(opened, motion, self.certificate):
-                written.append(str(self.certificate))
-        elif self.certificate is not None and proof is not None:
-            if proof.write(self.certificate):
-                written.append(str(self.certificate))
-            else:
-                say(f"no certificate was written: {proof.reason}")
         return written

@@ -12,6 +12,7 @@ from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted, visible
 from exactfold._support.processes import available_cores
 from exactfold._support.verdict import PROVED
+from exactfold.app.commands.cells import asked_cell
 from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.pictures import ServeOptions, ViewOptions
 from exactfold.app.report.terminal import show
@@ -20,8 +21,10 @@ from exactfold.app.shell.shell import Bar, apart, interruptible, say, tell, wrot
 from exactfold.app.verbs.choosing import choose
 from exactfold.app.verbs.showing import shown
 from exactfold.app.viewer.page import checked_page, write_view
+from exactfold.app.viewer.rolling import write_rolling_view
 from exactfold.errors import UsageError
-from exactfold.pattern.opening import Opened
+from exactfold.motion.periodic.rolling import CELLS
+from exactfold.pattern.opening import Opened, is_cell_file
 
 
 class Wanted(ViewOptions):
@@ -34,6 +37,11 @@ class Wanted(ViewOptions):
         apart(output, self.file)
         checked_page(output)  # before the work
         clock = Clock(self.limit)
+        if self.direction is not None or is_cell_file(located(self.file)):
+            self._rolling(output, visible(name), clock)
+            return
+        if self.patch is not None:
+            raise UsageError("--patch goes with --direction X,Y")
         with Bar("reading") as bar, interruptible():
             opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=False)
             document = write_view(
@@ -44,6 +52,31 @@ class Wanted(ViewOptions):
                 frames=self.frames,
                 proving=self.proving,
                 workers=self.workers or available_cores(),
+                limit=clock,
+                progress=bar,
+            )
+        show(Text(document["answer"]))
+        wrote(output, _contents(document))
+
+    def _rolling(self, output: Path, name: str, clock: Clock) -> None:
+        """Write the page of a periodic sheet."""
+        if self.direction is None:
+            raise UsageError(
+                f"{self.file} is the cell of a periodic sheet: give --direction X,Y, across which "
+                "it rolls up"
+            )
+        if self.proving or (self.is_named and self.way is None):
+            raise UsageError("only --way N, --patch and --frames go with --direction")
+        with Bar("reading") as bar, interruptible():
+            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            document = write_rolling_view(
+                cell,
+                self.direction,
+                output,
+                name=name,
+                ways=None if self.way is None else [self.way],
+                cells=self.patch or CELLS,
+                frames=self.frames,
                 limit=clock,
                 progress=bar,
             )

@@ -1,16 +1,18 @@
-"""Reads the folds to drive and their angles, which --drive gives directly or in a file."""
+"""Reads the folds of --drive, with their angles, from a text or a file; and those of --stop."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 
 import typer
 
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.app.shell.parameters import fold_name
+from exactfold.app.shell.parameters import exact_number, fold_name
 from exactfold.errors import BadDriveError, NumberError, UsageError
 from exactfold.exact.numbers import approx_number
+from exactfold.motion.curves.stops import Stops
 from exactfold.pattern.crease_pattern import Edge
 
 Angles = dict[Edge, float | None]
@@ -31,6 +33,25 @@ def driven_angles(text: str) -> Angles:
         name, equals, value = part.strip().partition("=")
         _add(angles, name, value if equals else None, UsageError)
     return angles
+
+
+def stops(text: object) -> Stops:
+    """The stops in a text such as 120 or 120deg,3-7=90deg."""
+    everywhere: Fraction | None = None
+    single: dict[Edge, Fraction] = {}
+    for part in str(text).split(","):
+        name, equals, value = part.strip().rpartition("=")
+        angle = exact_number(value.removesuffix("deg"))
+        if not equals and everywhere is None:
+            everywhere = angle
+            continue
+        if not equals or fold_name(name) in single:
+            raise typer.BadParameter(f"{str(text)!r} gives two stops for the same folds")
+        single[fold_name(name)] = angle
+    try:
+        return Stops(everywhere, single)
+    except UsageError as error:
+        raise typer.BadParameter(str(error)) from None
 
 
 def _of_file(path: Path) -> Angles:

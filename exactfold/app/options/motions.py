@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from exactfold.app.options.driving import stops
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import WayOptions
 from exactfold.app.shell.parameters import (
@@ -16,16 +17,21 @@ from exactfold.app.shell.parameters import (
     Pattern,
     PrescribedAngles,
     Resume,
+    RollDirection,
+    RollPatch,
     Side,
     exact_number,
     flag,
     fold_name,
     number,
+    one_of,
     written,
 )
 from exactfold.app.shell.shell import apart
 from exactfold.design.actuation.hinges import Hinges
 from exactfold.errors import UsageError
+from exactfold.motion.curves.stops import Stops
+from exactfold.motion.solid.plates import HINGES, MIDDLE, Solid
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
@@ -63,6 +69,41 @@ class FoldOptions(WayOptions):
             help="Space the frames by equal steps of the angle of this fold, not of time.",
         ),
     ] = None
+    thickness: Annotated[
+        Fraction | None,
+        typer.Option(
+            parser=exact_number,
+            metavar="T",
+            help="Contacts of rigid panels of this thickness, in the unit of the sheet.",
+        ),
+    ] = None
+    hinge: Annotated[
+        str,
+        typer.Option(
+            parser=one_of(HINGES),
+            metavar="middle|valley",
+            help="With --thickness: all hinges lie in the middle of the panels, or in the upper "
+            "surface, where valleys close.",
+        ),
+    ] = MIDDLE
+    trim: Annotated[
+        Fraction | None,
+        typer.Option(
+            parser=exact_number,
+            metavar="W",
+            help="With --thickness: panels are cut back from their folds by this. Default: the "
+            "thickness.",
+        ),
+    ] = None
+    stop: Annotated[
+        Stops | None,
+        typer.Option(
+            parser=stops,
+            metavar="ANGLE|I-J=ANGLE,...",
+            help="Hard stops in degrees, of all folds or of single ones: the motion ends where the "
+            "first fold reaches its stop.",
+        ),
+    ] = None
     output: Annotated[
         Path | None,
         written(
@@ -90,10 +131,14 @@ class FoldOptions(WayOptions):
             "OUT.json",
         ),
     ] = None
+    direction: RollDirection = None
+    patch: RollPatch = None
     as_json: Json = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.patch is not None and self.direction is None:
+            raise UsageError("--patch goes with --direction X,Y")
         if self.way is not None or self.letters is not None:
             for option, value in (
                 ("--drive", self.drive),
@@ -101,12 +146,21 @@ class FoldOptions(WayOptions):
             ):
                 if value is not None:
                     raise UsageError(f"{option} goes with --signs or --up")
+        if self.thickness is None and (self.trim is not None or self.hinge != MIDDLE):
+            raise UsageError("--hinge and --trim go with --thickness")
         apart(
             self.output, self.file, self.boundary_heights, self.plot, self.picture, self.certificate
         )
         apart(self.plot, self.file, self.boundary_heights, self.picture, self.certificate)
         apart(self.picture, self.file, self.boundary_heights, self.certificate)
         apart(self.certificate, self.file, self.boundary_heights)
+
+    @property
+    def solid(self) -> Solid | None:
+        """The plates that the options describe; `UsageError` for numbers that make no plates."""
+        if self.thickness is None:
+            return None
+        return Solid(self.thickness, self.hinge, self.thickness if self.trim is None else self.trim)
 
 
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)

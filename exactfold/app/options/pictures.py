@@ -11,6 +11,8 @@ from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
     ALL,
     BoundaryHeights,
+    RollDirection,
+    RollPatch,
     Side,
     cell_numbers,
     duration,
@@ -108,6 +110,8 @@ class ViewOptions(WayOptions):
         ),
     ] = None
     frames: Annotated[int, number("Number of frames of each motion.", least=2)] = 32
+    direction: RollDirection = None
+    patch: RollPatch = None
     proving: Annotated[
         bool,
         flag(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
+from math import degrees, pi
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -26,11 +26,13 @@ from exactfold.motion.curves.events import (
     NODE,
     RETURN,
     SINGULAR,
+    STOP,
     TURNING,
     Event,
 )
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.panels.families import FamilyMotion
+from exactfold.motion.periodic.rolling import RollingMotion
 
 if TYPE_CHECKING:
     from exactfold.motion.curves.in_motion import SheetInMotion
@@ -46,7 +48,7 @@ _CORNERS: Final = 8
 
 
 def motion_report(
-    motion: Motion | PanelMotion | FamilyMotion,
+    motion: Motion | PanelMotion | FamilyMotion | RollingMotion,
     written: Sequence[str] = (),
     proof: MotionProof | PanelProof | None = None,
 ) -> Group:
@@ -94,8 +96,19 @@ def _branch_rows(motion: Motion) -> list[tuple[str, RenderableType]]:
     return rows
 
 
-def _mode_rows(motion: PanelMotion | FamilyMotion) -> list[tuple[str, RenderableType]]:
-    return [("way", cut(motion.name.removeprefix("way ")))]
+def _mode_rows(
+    motion: PanelMotion | FamilyMotion | RollingMotion,
+) -> list[tuple[str, RenderableType]]:
+    rows: list[tuple[str, RenderableType]] = [("way", cut(motion.name.removeprefix("way ")))]
+    if not isinstance(motion, RollingMotion) and motion.solid is not None:
+        limits = {
+            f"{name} at most {degrees(motion.solid.limit(letter)):.6g}"
+            for name, letter in (("mountains", "M"), ("valleys", "V"))
+            if letter in motion.assignment.values()
+        }
+        text = f"{motion.solid.text}; {', '.join(sorted(limits))} degrees at their hinges"
+        rows.append(("plates", cut(text)))
+    return rows
 
 
 def _proof(proof: MotionProof | PanelProof) -> RenderableType:
@@ -128,21 +141,28 @@ def _proof_of_panels(proof: PanelProof) -> RenderableType:
         touching = "no two panels touch before its folds close, at time pi"
         if proof.contacts.clear < pi:
             touching = _enclosed(proof.contacts.event, passed=proof.passed)
+    if proof.stop is not None:
+        touching += f"; {event_text(proof.stop)} {_between(proof.stop)}"
     return Text.assemble(status_text(PROVED), f": {proof.motion.reason}; {touching}")
 
 
 def _enclosed(event: Event, *, passed: bool) -> str:
-    """Bounds of the time of a first contact, with so many digits that they differ."""
+    """Bounds of the time of a first contact."""
+    after = ", where the motion goes on" if passed else ""
+    return f"the first contact is {_between(event)}{after}"
+
+
+def _between(event: Event) -> str:
+    """Bounds of the time of an event, with so many digits that they differ."""
     low, high = event.time
     digits = next((n for n in range(8, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
-    after = ", where the motion goes on" if passed else ""
-    return f"the first contact is between the times {low:.{digits}g} and {high:.{digits}g}{after}"
+    return f"between the times {low:.{digits}g} and {high:.{digits}g}"
 
 
-def _proved(motion: Motion | PanelMotion | FamilyMotion) -> RenderableType:
+def _proved(motion: Motion | PanelMotion | FamilyMotion | RollingMotion) -> RenderableType:
     if isinstance(motion, Motion):
         return "followed in floats: not proved (--certificate proves it)"
-    if isinstance(motion, FamilyMotion):
+    if isinstance(motion, FamilyMotion | RollingMotion):
         return motion.reason
     if motion.exists is not PROVED:
         return "followed in floats: not proved"
@@ -187,6 +207,7 @@ def event_text(event: Event) -> str:
         DEAD_POINT: f"{folds} {'turn' if several else 'turns'} back: they cannot be driven further",
         NODE: f"another motion crosses here{detail}",
         RETURN: "the sheet is flat again",
+        STOP: f"{folds} {'reach their stops' if several else 'reaches its stop'}",
         SINGULAR: f"it could not be followed further{detail}",
     }
     return words[event.kind]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
@@ -98,6 +98,17 @@ def degrees(text: object) -> float:
         return approx_number(str(text))
     except NumberError:
         raise typer.BadParameter(f"{str(text)!r} is not a number") from None
+
+
+def one_of(names: Sequence[str]) -> Callable[[object], str]:
+    """A parser of one of some words."""
+
+    def read(text: object) -> str:
+        if text not in names:
+            raise typer.BadParameter(f"{text!r} is none of {', '.join(names)}")
+        return str(text)
+
+    return read
 
 
 def exact_number(text: object) -> Fraction:
@@ -362,5 +373,25 @@ Side = Annotated[
         parser=one_side,
         metavar="+|-",
         help="- follows the mirror image, with all signs and letters reversed.",
+    ),
+]
+
+RollDirection = Annotated[
+    tuple[Fraction, Fraction] | None,
+    typer.Option(
+        "--direction",
+        parser=direction_vector,
+        metavar="X,Y",
+        help="For the cell of a periodic sheet: the direction in which it rolls up. --way N is the "
+        "way of `count --direction`, in which all edges fold.",
+    ),
+]
+RollPatch = Annotated[
+    tuple[int, int] | None,
+    typer.Option(
+        "--patch",
+        parser=cell_numbers,
+        metavar="I,J",
+        help="With --direction: show I times J cells. Default: 5,5.",
     ),
 ]

@@ -16,7 +16,9 @@ from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.result import MatchedRay
 from exactfold.errors import NotFollowedError, UsageError
+from exactfold.motion.curves.events import STOP
 from exactfold.motion.curves.motion import Motion
+from exactfold.motion.curves.stops import Stops
 from exactfold.motion.following import follow as follow_branch
 from exactfold.motion.loops.matching import Loops, find_loops
 from exactfold.motion.panels.families import FamilyMotion, follow_family
@@ -25,6 +27,7 @@ from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.proving import PanelProof, prove_panels
 from exactfold.motion.proving import MotionProof
 from exactfold.motion.proving import prove as prove_motion
+from exactfold.motion.solid.plates import Solid
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.pattern.loading import PatternLike, open_sheet
@@ -51,6 +54,8 @@ def follow(
     by: Edge | None = None,
     held: Sequence[int] | None = None,
     through_branch_points: bool = False,
+    solid: Solid | None = None,
+    stops: Stops | None = None,
     progress: Progress | None = None,
 ) -> Motion | PanelMotion | FamilyMotion:
     """Follow the motion of a sheet along one way, from the flat state to the event `until`.
@@ -65,7 +70,8 @@ def follow(
     fold that closes, "90deg" at the first fold angle of that size; along a branch also "return"
     when the sheet is flat again, and a number, or "time=1.5", at that time. The motion has `frames`
     frames, at equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror
-    image. `held` has the corners of the face that does not move.
+    image. `held` has the corners of the face that does not move. With `stops` the motion ends at
+    the latest where the first fold reaches its stop. `solid` makes plates of rigid panels.
 
     These arguments are for branches only: `boundary_heights` are for a sheet with more than four
     corners. `drive` gives angles in degrees to which folds are driven
@@ -105,10 +111,14 @@ def follow(
             by=by,
             through_branch_points=through_branch_points,
             held=held,
+            solid=solid,
+            stops=stops,
             progress=progress,
         )
     _refuse_of_panels(choice, through_branch_points)
-    return along_panels(chosen, until=until, frames=frames, by=by, held=held)
+    return along_panels(
+        chosen, until=until, frames=frames, by=by, held=held, solid=solid, stops=stops
+    )
 
 
 def along(
@@ -119,25 +129,44 @@ def along(
     by: Edge | None = None,
     through_branch_points: bool = False,
     held: Sequence[int] | None = None,
+    solid: Solid | None = None,
+    stops: Stops | None = None,
     progress: Progress | None = None,
 ) -> Motion:
     """The motion along a branch that was chosen; the arguments are those of `follow`."""
+    if solid is not None:
+        raise UsageError(
+            "thickness is for ways of rigid panels, and this sheet of triangles folds along a "
+            "branch; its faces are followed without thickness"
+        )
     pinned = None
     if held is not None:
         if len(held) != 3:
             raise UsageError(f"held {tuple(held)}: give the three corners of a triangle")
         pinned = held[0], held[1], held[2]
-    return follow_branch(
-        chosen.branch,
-        side=chosen.side,
-        until=until,
-        frames=frames,
-        by=by,
-        through_branch_points=through_branch_points,
-        pinned=pinned,
-        drive=chosen.drive,
-        progress=progress,
-    )
+
+    def followed(until: str | float) -> Motion:
+        return follow_branch(
+            chosen.branch,
+            side=chosen.side,
+            until=until,
+            frames=frames,
+            by=by,
+            through_branch_points=through_branch_points,
+            pinned=pinned,
+            drive=chosen.drive,
+            progress=progress,
+        )
+
+    motion = followed(until)
+    if stops is None:
+        return motion
+    stop = stops.first(motion.pattern.folds, motion.sampled()[0], motion.angles_at)
+    if stop is None:
+        return replace(motion, stops=stops)
+    motion = followed(stop.time[1])
+    before = [event for event in motion.events if event.time < stop.time]
+    return replace(motion, end=STOP, events=(*before, stop), stops=stops)
 
 
 def along_panels(
@@ -147,6 +176,8 @@ def along_panels(
     frames: int = 60,
     by: Edge | None = None,
     held: Sequence[int] | None = None,
+    solid: Solid | None = None,
+    stops: Stops | None = None,
 ) -> PanelMotion | FamilyMotion:
     """The motion of rigid panels along a way that was chosen; the arguments are those of `follow`.
 
@@ -163,6 +194,8 @@ def along_panels(
             frames=frames,
             held=0 if held is None else _face(chosen.answer.known, held),
             way=None if way is None else way.number,
+            solid=solid,
+            stops=stops,
         )
         if way is None:
             return motion
@@ -181,6 +214,8 @@ def along_panels(
         frames=frames,
         by=by,
         held=0 if held is None else _face(known, held),
+        solid=solid,
+        stops=stops,
     )
 
 

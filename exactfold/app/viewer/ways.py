@@ -226,6 +226,11 @@ def _family(motion: SheetInMotion, dimension: int) -> Family:
     return {"dimension": dimension, "drivers": places}
 
 
+def in_floats(motion: SheetInMotion) -> DrawnMotion:
+    """A motion of which nothing is proved."""
+    return _drawn(motion, _in_floats(motion))
+
+
 def _in_floats(motion: SheetInMotion) -> _Known:
     """What is known before any proof."""
     return _Known(False, False, f"followed in floats; {_kept(motion)}")

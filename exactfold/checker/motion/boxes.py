@@ -153,7 +153,7 @@ def volume_sign(boxes: Boxes, i: int, j: int, k: int, m: int) -> int:
         arms.append(arm)
         sizes *= size
         most *= size + isqrt(dot(spread, spread)) + 1
-    volume = dot(arms[0], _cross(arms[1], arms[2]))
+    volume = dot(arms[0], crossed(arms[1], arms[2]))
     return 0 if abs(volume) <= most - sizes else 1 if volume > 0 else -1
 
 
@@ -179,7 +179,7 @@ def best_apart(boxes: Boxes, one: Sequence[int], two: Sequence[int], planar: boo
     products of a side of each, and the normals of the sides within the planes of the triangles.
     """
     p, q = ([middle_of(boxes[v]) for v in face] for face in (one, two))
-    sides = [[_minus(t[(k + 1) % 3], t[k]) for k in range(3)] for t in (p, q)]
+    sides = [[minus(t[(k + 1) % 3], t[k]) for k in range(3)] for t in (p, q)]
 
     def made() -> Iterator[Point]:
         if planar:
@@ -187,18 +187,18 @@ def best_apart(boxes: Boxes, one: Sequence[int], two: Sequence[int], planar: boo
             return
         yield from ([float(i == k) for i in range(3)] for k in range(3))
         for side in sides:
-            normal = _unit(_cross(side[0], side[1]))
+            normal = unit(crossed(side[0], side[1]))
             yield normal
-            yield from (_cross(s, normal) for s in side)
-        yield from (_cross(s, t) for s in sides[0] for t in sides[1])
+            yield from (crossed(s, normal) for s in side)
+        yield from (crossed(s, t) for s in sides[0] for t in sides[1])
 
     best, width = [0.0, 0.0, 0.0], 0.0
-    for n in map(_unit, made()):
+    for n in map(unit, made()):
         a, b = [sum(map(mul, n, x)) for x in p], [sum(map(mul, n, x)) for x in q]
         for gap, sign in ((min(a) - max(b), 1), (min(b) - max(a), -1)):
             if gap > width:
                 best, width = [sign * c for c in n], gap
-    return _whole(best)
+    return whole(best)
 
 
 def best_corner(
@@ -211,8 +211,8 @@ def best_corner(
     direction to try.
     """
     at = middle_of(boxes[v])
-    p = [_unit(_minus(middle_of(boxes[w]), at)) for w in one]
-    p += [_unit(_minus(at, middle_of(boxes[w]))) for w in two]
+    p = [unit(minus(middle_of(boxes[w]), at)) for w in one]
+    p += [unit(minus(at, middle_of(boxes[w]))) for w in two]
     made = list(p)
     for i in range(4):
         for j in range(i):
@@ -220,14 +220,15 @@ def best_corner(
             if planar:
                 continue
             for k in range(j):
-                normal = _cross(_minus(p[j], p[i]), _minus(p[k], p[i]))
+                normal = crossed(minus(p[j], p[i]), minus(p[k], p[i]))
                 sign = 1 if sum(map(mul, normal, p[i])) > 0 else -1
                 made.append([sign * c for c in normal])
-    units = [_unit(n) for n in made]
-    return _whole(max(units, key=lambda n: min(sum(map(mul, n, x)) for x in p)))
+    units = [unit(n) for n in made]
+    return whole(max(units, key=lambda n: min(sum(map(mul, n, x)) for x in p)))
 
 
-def _cross(a: Sequence[_Number], b: Sequence[_Number]) -> list[_Number]:
+def crossed(a: Sequence[_Number], b: Sequence[_Number]) -> list[_Number]:
+    """The cross product."""
     return [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -235,14 +236,17 @@ def _cross(a: Sequence[_Number], b: Sequence[_Number]) -> list[_Number]:
     ]
 
 
-def _minus(a: Point, b: Point) -> Point:
+def minus(a: Point, b: Point) -> Point:
+    """The difference."""
     return [x - y for x, y in zip(a, b, strict=True)]
 
 
-def _unit(a: Point) -> Point:
+def unit(a: Point) -> Point:
+    """The unit vector in this direction; 0 for 0."""
     size = sum(x * x for x in a) ** 0.5
     return [x / size for x in a] if size else a
 
 
-def _whole(a: Point) -> Direction:
+def whole(a: Point) -> Direction:
+    """A multiple of the vector, rounded to integers."""
     return [round(x * (1 << _DIRECTION_BITS)) for x in a]

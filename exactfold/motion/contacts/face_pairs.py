@@ -129,6 +129,11 @@ class Open:
         return bool(len(self.apart) or len(self.corner) or len(self.folds))
 
     @classmethod
+    def none(cls) -> Open:
+        """No pairs and no folds."""
+        return cls(*(np.zeros(0, dtype=np.intp),) * 3)
+
+    @classmethod
     def all_of(cls, pairs: AnyPairs) -> Open:
         """All pairs and all folds."""
         sizes = len(pairs.apart), len(pairs.corner), len(pairs.closed)

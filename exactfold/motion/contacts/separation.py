@@ -22,7 +22,7 @@ The sums are computed in floats, with u = 2^-53. Their rounding errors are bound
   parts of a sum n.x are at most 8 sqrt(3) < 14 and are rounded less than 10 times. Their error is
   less than 30 u 14, and with the subtractions less than 60 u 14 < 1e-13. The squares and products
   of folds are sums of terms that add up to less than 1500, each rounded less than 20 times; their
-  error is less than 4e-12. `_MARGIN` is larger than both errors.
+  error is less than 4e-12. `MARGIN` is larger than both errors.
 - The six products of a determinant add up to at most 3^(3/2) times the product of the lengths of
   its rows, and each is rounded less than 10 times. The relative errors of the two products of
   lengths are less than 40 u each. In all the error is less than 2e-14 of the product of the
@@ -31,11 +31,12 @@ The sums are computed in floats, with u = 2^-53. Their rounding errors are bound
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from itertools import combinations
 from math import comb
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -43,7 +44,7 @@ from exactfold._support.arrays import BoolArray, FloatArray, IndexArray, cross
 from exactfold.motion.contacts.face_pairs import AnyPairs, Open
 from exactfold.pattern.crease_pattern import Edge, Triangle
 
-_MOST, _ROUND, _MARGIN, _OF_VOLUME = 4.0, 1e-13, 1e-11, 1e-13
+_MOST, _ROUND, MARGIN, _OF_VOLUME = 4.0, 1e-13, 1e-11, 1e-13
 _MOST_ROWS = 21
 _PRODUCTS = 2_000_000
 _SUMS = "...k,k...vc->...vc"
@@ -99,6 +100,10 @@ class Swept:
         return cls(start, slope, error + _ROUND, half, planar)
 
 
+Test: TypeAlias = "Callable[[Swept, Open], Open]"
+"""Which of some pairs are not proved to stay apart on a stretch."""
+
+
 def _powers(x: Any, count: int) -> FloatArray:
     """1, x, ..., x^(count - 1), computed by products, along a new last axis in place of the last
     two.
@@ -132,7 +137,7 @@ def not_separated(pairs: AnyPairs, swept: Swept, among: Open) -> Open:
 
 
 def clear_until(
-    pairs: AnyPairs,
+    pairs: AnyPairs | Test,
     coefficients: FloatArray,
     radius: FloatArray,
     low: float,
@@ -147,21 +152,25 @@ def clear_until(
     The first value is proved. The piece is p(s) = sum_k c_k s^k for low <= s <= high, shape (order
     + 1, V, 3); every coordinate is within `radius` of it, shape (V, 3). Where a pair is not
     separated the piece is halved, down to the share `finest` of its length. The second value is
-    empty if the whole piece is clear. Pairs named there may still be apart.
+    empty if the whole piece is clear. Pairs named there may still be apart. `pairs` are those of
+    triangles, or the test of other bodies, of which `among` says which are asked.
     """
+    test = partial(not_separated, pairs) if isinstance(pairs, AnyPairs) else pairs
     shortest = finest * (high - low)
-    stack = [(low, high, Open.all_of(pairs) if among is None else among)]
+    if among is None:
+        among = Open.all_of(pairs) if isinstance(pairs, AnyPairs) else Open.none()
+    stack = [(low, high, among)]
     while stack:
         a, b, asked = stack.pop()
         swept = Swept.of(coefficients, radius, a, b, planar=planar)
-        left = not_separated(pairs, swept, asked)
+        left = test(swept, asked)
         if not left:
             continue
         middle = 0.5 * (a + b)
         if b - a <= shortest or not a < middle < b:
             return a, left
         stack += [(middle, b, left), (a, middle, left)]
-    return high, Open(*(np.zeros(0, dtype=np.intp),) * 3)
+    return high, Open.none()
 
 
 def _apart(swept: Swept, triangles: IndexArray, rows: IndexArray) -> BoolArray:
@@ -182,13 +191,13 @@ def _at_corner(swept: Swept, rows: IndexArray) -> BoolArray:
         return np.zeros(0, dtype=bool)
     v, one, two = rows[:, :1], rows[:, 1:3], rows[:, 3:]
     at = swept.start if not swept.planar else swept.start * np.array([1.0, 1.0, 0.0])
-    axes = _nearest_points(_unit(np.concatenate([at[one] - at[v], at[v] - at[two]], axis=1)))
+    axes = _nearest_points(unit(np.concatenate([at[one] - at[v], at[v] - at[two]], axis=1)))
     if swept.planar:
         axes = axes * np.array([1.0, 1.0, 0.0])
     # The plane passes through the moving vertex, so both sides are differences from it.
-    left = _least(swept, axes, one, np.broadcast_to(v, one.shape))
-    right = _least(swept, axes, np.broadcast_to(v, two.shape), two)
-    return np.asarray((np.minimum(left, right) > _MARGIN).any(axis=1))
+    left = least_gap(swept, axes, one, np.broadcast_to(v, one.shape))
+    right = least_gap(swept, axes, np.broadcast_to(v, two.shape), two)
+    return np.asarray((np.minimum(left, right) > MARGIN).any(axis=1))
 
 
 def _open_folds(swept: Swept, pairs: AnyPairs, rows: IndexArray) -> BoolArray:
@@ -206,7 +215,7 @@ def _open_folds(swept: Swept, pairs: AnyPairs, rows: IndexArray) -> BoolArray:
     )
     error = (np.abs(gap) * (swept.error[left] + swept.error[right])[:, : gap.shape[1]]).sum(axis=1)
     least = (gap * gap).sum(axis=1) - 2 * (drift + error)
-    far = least > pairs.closed[rows] + _MARGIN
+    far = least > pairs.closed[rows] + MARGIN
     if swept.planar:
         i, j = hinges[:, 0], hinges[:, 1]
         return np.asarray(far | (_upright(swept, i, j, left) & _upright(swept, j, i, right)))
@@ -227,7 +236,7 @@ def _upright(swept: Swept, i: IndexArray, j: IndexArray, k: IndexArray) -> BoolA
     )
     least = _cross(a, b) - swept.half * np.abs(_cross(a, v) + _cross(u, b))
     least = least - swept.half**2 * np.abs(_cross(u, v)) - e * size_b - f * size_a - e * f
-    return np.asarray(least > _MARGIN)
+    return np.asarray(least > MARGIN)
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -279,11 +288,11 @@ def _volume_signs(swept: Swept, rows: IndexArray) -> IndexArray:
 def _separated(swept: Swept, one: IndexArray, two: IndexArray, axes: FloatArray) -> BoolArray:
     """Whether some of the axes, shape (pairs, axes, 3), separates two faces, shape (pairs, 3)."""
     i, j = np.repeat(one, 3, axis=1), np.tile(two, (1, 3))
-    best = np.maximum(_least(swept, axes, i, j), _least(swept, -axes, i, j))
-    return np.asarray((best > _MARGIN).any(axis=1))
+    best = np.maximum(least_gap(swept, axes, i, j), least_gap(swept, -axes, i, j))
+    return np.asarray((best > MARGIN).any(axis=1))
 
 
-def _least(swept: Swept, axes: FloatArray, i: IndexArray, j: IndexArray) -> FloatArray:
+def least_gap(swept: Swept, axes: FloatArray, i: IndexArray, j: IndexArray) -> FloatArray:
     """The least n.(x_i - x_j) over pairs of vertices, for each axis; shape (pairs, axes)."""
     at = np.einsum("pac,pkc->pak", axes, swept.start[i] - swept.start[j])
     drift = np.einsum("pac,pkc->pak", axes, swept.slope[i] - swept.slope[j])
@@ -299,11 +308,11 @@ def _axes(a: FloatArray, b: FloatArray, planar: bool) -> FloatArray:
     sides_a, sides_b = (np.roll(t, -1, axis=1) - t for t in (a, b))
     if planar:
         sides = np.concatenate([sides_a, sides_b], axis=1)
-        return _unit(np.stack([-sides[..., 1], sides[..., 0], np.zeros(sides.shape[:2])], axis=-1))
+        return unit(np.stack([-sides[..., 1], sides[..., 0], np.zeros(sides.shape[:2])], axis=-1))
     normals = [cross(sides[:, :1], sides[:, 1:2]) for sides in (sides_a, sides_b)]
     crossed = cross(sides_a[:, :, None], sides_b[:, None]).reshape(len(a), 9, 3)
-    across = [cross(sides, _unit(n)) for sides, n in zip((sides_a, sides_b), normals, strict=True)]
-    return _unit(np.concatenate([*across, *normals, crossed], axis=1))
+    across = [cross(sides, unit(n)) for sides, n in zip((sides_a, sides_b), normals, strict=True)]
+    return unit(np.concatenate([*across, *normals, crossed], axis=1))
 
 
 def _nearest_points(p: FloatArray) -> FloatArray:
@@ -322,9 +331,10 @@ def _nearest_points(p: FloatArray) -> FloatArray:
     for i, j, k in combinations(range(4), 3):
         normal = cross(p[:, j] - p[:, i], p[:, k] - p[:, i])
         candidates.append((normal * np.sign((normal * p[:, i]).sum(axis=1))[:, None])[:, None])
-    return _unit(np.concatenate(candidates, axis=1))
+    return unit(np.concatenate(candidates, axis=1))
 
 
-def _unit(vectors: FloatArray) -> FloatArray:
+def unit(vectors: FloatArray) -> FloatArray:
+    """Vectors of length just below 1 in the same directions; 0 for 0."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.asarray(vectors / np.maximum(length, 1e-300) * (1 - 1e-12))

@@ -22,9 +22,21 @@ from exactfold.pattern.crease_pattern import Edge, Triangle
 CONTACT, FLAT_FOLD, TURNING, CHANGE = "contact", "flat-fold", "turning", "change"
 NODE, SINGULAR, RETURN = "node", "singular", "return"
 ANGLE, LENGTH = "angle", "length"
-DRIVEN, DEAD_POINT = "driven", "dead-point"
+DRIVEN, DEAD_POINT, STOP = "driven", "dead-point", "stop"
 
-KINDS = CONTACT, FLAT_FOLD, TURNING, CHANGE, NODE, SINGULAR, RETURN, ANGLE, DRIVEN, DEAD_POINT
+KINDS = (
+    CONTACT,
+    FLAT_FOLD,
+    TURNING,
+    CHANGE,
+    NODE,
+    SINGULAR,
+    RETURN,
+    ANGLE,
+    DRIVEN,
+    DEAD_POINT,
+    STOP,
+)
 """All kinds of events."""
 
 CHANGES = "from mountain to valley", "from valley to mountain"
@@ -67,8 +79,8 @@ class Event:
     another curve of configurations crosses, often where the stars of `vertices` are flat.
     "singular": the curve could not be followed further. "return": the sheet is flat again. "angle":
     the requested angle is reached. "driven": the driven folds have their angles. "dead-point": they
-    turn back before. `time` is a lower and an upper bound of the time of the event. `faces` are
-    given by their corners. `detail` says more in words.
+    turn back before. "stop": a fold reaches its hard stop. `time` is a lower and an upper bound of
+    the time of the event. `faces` are given by their corners. `detail` says more in words.
     """
 
     kind: str

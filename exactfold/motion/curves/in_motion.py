@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         FrameKeys,
         MotionDocument,
         PanelMotionDocument,
+        RollingMotionDocument,
     )
     from exactfold.pattern.crease_pattern import CreasePattern, Edge
     from exactfold.pattern.panel_pattern import PanelPattern
@@ -165,7 +166,7 @@ class SheetInMotion(Picture, ABC):
     @abstractmethod
     def to_dict(
         self, name: str | None = None, written: Sequence[str] = ()
-    ) -> MotionDocument | PanelMotionDocument:
+    ) -> MotionDocument | PanelMotionDocument | RollingMotionDocument:
         """The object printed by `exactfold fold --json`."""
 
     @property

@@ -23,6 +23,7 @@ from exactfold.motion.curves.drive import PrescribedAngles
 from exactfold.motion.curves.events import Event
 from exactfold.motion.curves.in_motion import FrameBounds, SheetInMotion
 from exactfold.motion.curves.motion_document import MotionDocument
+from exactfold.motion.curves.stops import Stops
 from exactfold.pattern.crease_pattern import CreasePattern, Edge, Triangle
 from exactfold.pattern.described import described
 from exactfold.pattern.near_degeneracy import warnings
@@ -63,6 +64,7 @@ class Motion(SheetInMotion):
     seconds: float = field(default=0.0, compare=False)
     bounds: FrameBounds | None = None
     drive: PrescribedAngles | None = None
+    stops: Stops | None = None
 
     @property
     def status(self) -> Verdict:
@@ -159,6 +161,12 @@ class Motion(SheetInMotion):
         angles = np.unwrap(fold_angles_of(coords, hinges_of(self.branch.pattern)), axis=0)
         return times * float(self.curve.framework.unit), angles
 
+    def angles_at(self, times: FloatArray) -> FloatArray:
+        """All fold angles in radians at the given times, shape (times, folds), past +-pi."""
+        unit = float(self.curve.framework.unit)
+        unknowns = np.array([self.curve.at(time / unit) for time in times])
+        return angles_at(self._problem, self.curve, times, unknowns, self.side)
+
     def to_dict(self, name: str | None = None, written: Sequence[str] = ()) -> MotionDocument:
         """The object printed by `exactfold fold --json`: `schema("motion")`.
 
@@ -177,6 +185,8 @@ class Motion(SheetInMotion):
             "drive": None if self.drive is None else self.drive.to_dict(),
             "modes": None,
             "way": None,
+            "plates": None,
+            "stops": None if self.stops is None else self.stops.to_dict(self.pattern.folds),
             **self.frames_reported(written),
             "warnings": warnings(branch.pattern),
             "seconds": round(self.seconds, 3),

@@ -116,6 +116,8 @@ class ProofDocument(TypedDict):
     node: LastBranchPoint | None
     """The branch point at which the proof ends, where other curves cross; null if it ends
     elsewhere."""
+    stop: None
+    """Stops along a branch are found in floating point."""
 
 
 class PanelProofDocument(TypedDict):
@@ -134,6 +136,8 @@ class PanelProofDocument(TypedDict):
     to: None
     through: Empty
     node: None
+    stop: EventDocument | None
+    """The stop at which the motion ends, its time enclosed; null if it ends elsewhere."""
 
 
 class MotionDocument(FrameKeys):
@@ -158,10 +162,48 @@ class MotionDocument(FrameKeys):
     """By driven fold i-j the angle to which it is driven; null without --drive."""
     modes: None
     way: None
+    plates: None
+    """Branches are followed without thickness."""
+    stops: dict[FoldText, Rational] | None
+    """By fold i-j its stop in degrees; null without --stop."""
     warnings: list[WarningDocument]
     seconds: NotNegative
     proof: ProofDocument | None
     """With --certificate."""
+
+
+class RollingMotionDocument(FrameKeys):
+    """A patch of a periodic sheet that rolls up along a branch."""
+
+    format: Literal["exactfold motion result"]
+    version: Literal[3]
+    pattern: PatternDocument
+    """The flat patch."""
+    theory: Literal["periodic"]
+    """What the sheet folds along."""
+    direction: Pair[int]
+    """The direction n across which it rolls up."""
+    cells: Pair[Positive]
+    """The numbers of cells in the patch, along both lattice vectors."""
+    screws: list[Pair[Pair[float]]]
+    """For each frame and lattice vector: the angle of the screw in radians, and its advance."""
+    assignment: Assignment
+    """By fold i-j of the patch: mountain, valley, flat, undecided, seen from +z."""
+    way: Positive
+    """The number of the way, as count --direction lists it."""
+    seconds: NotNegative
+    proof: None
+
+
+class PlatesDocument(TypedDict):
+    """Panels with a thickness, in the unit of the pattern."""
+
+    thickness: Rational
+    """Of every panel."""
+    hinge: Literal["middle", "valley"]
+    """Where all hinges lie: in the middle of the panels, or in the upper surface."""
+    trim: Rational
+    """How far panels are cut back from their folds."""
 
 
 class PanelMotionDocument(FrameKeys):
@@ -182,6 +224,10 @@ class PanelMotionDocument(FrameKeys):
     """The numbers of the modes that fold, in `modes` of count --json."""
     way: Positive | None
     """The number of the way, as count lists it; null where the modes are part of no listed way."""
+    plates: PlatesDocument | None
+    """With --thickness."""
+    stops: dict[FoldText, Rational] | None
+    """By fold i-j its stop in degrees; null without --stop."""
     warnings: Empty
     seconds: NotNegative
     proof: PanelProofDocument | None

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, cos, floor, pi, sin, tan
 
 from exactfold.certificates.entries import Document
 from exactfold.checker.motion.panels.certificate import (
+    BUILT,
     CLOSING,
     LAYERED,
     PANEL_MOTION,
@@ -19,9 +20,11 @@ from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import Number, Surd, SurdField, simple
 from exactfold.motion.claims import Claim, joined
-from exactfold.motion.curves.events import CONTACT, Event
+from exactfold.motion.curves.events import CONTACT, STOP, Event
 from exactfold.motion.panels.clearance import PanelClearance
 from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.panels.thick import ThickContacts
+from exactfold.motion.solid.plates import Solid
 from exactfold.panels.modes.densities import split
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.pattern.panel_entries import number_document, panels_document
@@ -32,6 +35,7 @@ _SLACK = Fraction(1, 1 << 22)
 """The claim ends this much of the parameter early, because the checker has coarser separating
 planes.
 """
+_TRIES = 20
 _PLACES = 44
 """Times are rounded to this many binary places."""
 
@@ -44,7 +48,8 @@ def certificate_of_panel_motion(
     It claims that the panels fold in this way, and a time before which no two of them touch. If a
     contact is proved, it also claims a time by which some panels touch; or if it is proved that
     none touch before all folds close together, it claims this, and the order of `layers` then, if
-    that is given. The times are those of `contacts`, made slightly weaker.
+    that is given. Of plates it claims all this of the plates; with stops, which fold reaches its
+    stop first, and when. The times are those of `contacts`, made slightly weaker.
 
     Raises `NotApplicableError` if a vertex needs more than one square root besides those of the
     coordinates.
@@ -58,6 +63,8 @@ def certificate_of_panel_motion(
     >>> checker.check(certificate_of_panel_motion(motion, prove_contacts(motion)))["drivers"]
     [[0, 4]]
     """
+    if motion.solid is not None or motion.stops is not None:
+        return _certificate_of_built(motion, contacts)
     timing = Timing.of(motion)
     claims = [driven_claim(motion)]
     if timing.rates is not None:
@@ -74,6 +81,27 @@ def certificate_of_panel_motion(
         claims.append(clear_claimed)
         if contacts.event is not None:
             claims.append(contact_claim(contacts.event, clear, timing))
+    return _document(motion, version, claims)
+
+
+def _certificate_of_built(motion: PanelMotion, contacts: PanelClearance) -> Document:
+    """The certificate of a motion of plates, or with stops."""
+    timing = Timing.of(motion, rated=True)
+    claims = [driven_claim(motion), Claim({"rates": timing.rates})]
+    if motion.solid is not None:
+        claims.append(Claim({"plates": motion.solid.to_dict()}))
+    clear, clear_claimed = clear_claim(motion, contacts, timing)
+    claims.append(clear_claimed)
+    event = contacts.event
+    if event is not None and (motion.solid is None or event.kind != CONTACT):
+        claims.append(contact_claim(event, clear, timing))
+    elif event is not None and motion.solid is not None:
+        claims.append(overlap_claim(motion, motion.solid, event, clear, timing))
+    claims += [stop_claim(motion, event, timing) for event in motion.events if event.kind == STOP]
+    return _document(motion, BUILT, claims)
+
+
+def _document(motion: PanelMotion, version: int, claims: list[Claim]) -> Document:
     return {
         "format": PANEL_MOTION.format,
         "version": version,
@@ -93,11 +121,11 @@ class Timing:
     rates: list[str] | None
 
     @classmethod
-    def of(cls, motion: PanelMotion) -> Timing:
-        """That of a motion."""
+    def of(cls, motion: PanelMotion, *, rated: bool = False) -> Timing:
+        """That of a motion; with rates in any case if `rated`."""
         drivers = _drivers(motion)
         sizes = [Fraction(abs(rate)) for rate in (*motion.rates, *motion.free_rates.values())]
-        if min(sizes) >= 1:
+        if min(sizes) >= 1 and not rated:
             return cls(OneRate(), None)
         rates = [format_rational(size) for size in sizes]
         return cls(Rates(drivers, rates), rates)
@@ -176,6 +204,49 @@ def contact_claim(event: Event, clear: Fraction, timing: Timing) -> Claim:
             }
         },
         evidence,
+    )
+
+
+def overlap_claim(
+    motion: PanelMotion, solid: Solid, event: Event, clear: Fraction, timing: Timing
+) -> Claim:
+    """The claim that states the first contact of plates, with a point of both.
+
+    The point is looked for at the parameter of the file, a little later than the contact. Raises
+    `NotApplicableError` if none is found soon.
+    """
+    thick = ThickContacts(motion, solid)
+    for k in range(_TRIES):
+        later = (event.time[0], event.time[1] + (1 << k) * 2.0**-_PARAMETER_BITS)
+        claim = contact_claim(replace(event, time=later), clear, timing)
+        end = Fraction(claim.evidence["contact"], 1 << _PARAMETER_BITS)
+        found = thick.crossed(float(timing.clock.time(end)[1]))
+        if found is None:
+            continue
+        crossed, (_, point) = found
+        faces = {"faces": [list(face) for face in crossed.faces], "folds": []}
+        return Claim(
+            {"contact": {**claim.claims["contact"], **faces}},
+            {**claim.evidence, "point": [format_rational(c) for c in point]},
+        )
+    raise NotApplicableError("no certificate: no point of both plates is found")
+
+
+def stop_claim(motion: PanelMotion, event: Event, timing: Timing) -> Claim:
+    """The claim that states which fold is the first at its stop, and when."""
+    angles = {} if motion.stops is None else motion.stops.of(motion.pattern.folds)
+    begin = _at_most(timing.parameter(event.time[0]))
+    end = _at_least(timing.parameter(event.time[1]))
+    low, high = timing.clock.time(begin)[0], timing.clock.time(end)[1]
+    return Claim(
+        {
+            "stop": {
+                "angles": [[i, j, format_rational(a)] for (i, j), a in sorted(angles.items())],
+                "fold": list(event.folds[0]),
+                "time": [format_rational(_rounded(low, -1)), format_rational(_rounded(high, 1))],
+            }
+        },
+        {"stop": [_in_places(begin), _in_places(end)]},
     )
 
 

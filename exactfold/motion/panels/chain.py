@@ -76,13 +76,16 @@ def product(first: Turned, second: Turned) -> Turned:
 
 
 def moved(rotation: Turned, point: FloatArray, off: float, shift: Turned) -> Turned:
-    """The place of a point (x, y) of the flat sheet, known within `off`, after a rotation and a
-    shift.
+    """The place of a point after a rotation and a shift.
+
+    In the flat sheet the point is at (x, y), or at (x, y, z) above or below it, known within `off`.
     """
     r = rotation.polynomial
     place = r[:, 0] * point[0] + r[:, 1] * point[1] + shift.polynomial
+    if len(point) > 2:
+        place = place + r[:, 2] * point[2]
     reach = float(abs(point).sum())
-    rounded = 6 * _U * (reach * size(r) + size(shift.polynomial))
+    rounded = 8 * _U * (reach * size(r) + size(shift.polynomial))
     error = rotation.error * reach + (1 + rotation.error) * off + shift.error + rounded
     return Turned(place, error * _MORE)
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from math import inf, nextafter, pi
+from functools import cached_property, partial
+from math import floor, inf, nextafter, pi
 
 import numpy as np
 from flint import arb, ctx
@@ -16,13 +16,20 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError
 from exactfold.exact.surds import ball
 from exactfold.motion.contacts.face_pairs import AnyPairs, Open
-from exactfold.motion.contacts.separation import Swept, clear_until, through
+from exactfold.motion.contacts.separation import (
+    Swept,
+    Test,
+    clear_until,
+    not_separated,
+    through,
+)
 from exactfold.motion.curves.events import CONTACT, FLAT_FOLD, Event
 from exactfold.motion.panels.contacts import PanelContacts
 from exactfold.motion.panels.curves import LinearCurve
 from exactfold.motion.panels.last_stretch import LastStretch
 from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.pieces import PanelPieces
+from exactfold.motion.panels.thick import ThickContacts
 from exactfold.panels.vertex.stars import dot
 
 Panel = tuple[int, ...]
@@ -30,6 +37,8 @@ Panel = tuple[int, ...]
 _BITS = 128
 _FINEST = 2.0**-24
 _STEPS = 40
+_PARTS = 8
+"""Pieces begin at such a part of a radian, so that no sum of their times is rounded."""
 _FIRST = 1e-12
 """The search for a crossing begins this long, in radians, after the contact found in floats."""
 _NARROW = 1e-3
@@ -38,7 +47,7 @@ _NARROW = 1e-3
 
 @dataclass(frozen=True, repr=False)
 class PanelClearance:
-    """What is proved of the contacts of a motion of panels, ignoring thickness.
+    """What is proved of the contacts of a motion of panels, without thickness or of its plates.
 
     From time 0 until before `clear`, no two panels touch except in the folds and corners they
     share. `event` is a contact, or folds that close, that is proved to happen in `event.time` =
@@ -90,36 +99,80 @@ def prove_contacts(motion: PanelMotion, clock: Clock = UNLIMITED) -> PanelCleara
             "nothing is proved of contacts, because the motion is not proved to exist"
         )
     motion.pattern.check_positions()
+    if motion.solid is not None:
+        thick = ThickContacts(motion, motion.solid)
+
+        def overlap(time: float) -> Event | None:
+            crossed = thick.crossed(time)
+            return None if crossed is None else crossed[0]
+
+        return _enclosed(
+            motion, thick.pieces, thick.phases(), thick.left, thick.named, overlap, inf, clock
+        )
     contacts = PanelContacts(motion.pattern)
     pieces = PanelPieces(motion)
     pairs = PanelPairs(contacts, pieces.unit)
-    clear, left = 0.0, Open.all_of(pairs)
     stretch = LastStretch(motion)
-    end, _ = stretch.clear_from(pairs) if stretch.applies else (inf, left)
-    until = min(end, motion.duration)
-    for piece in pieces.between(0.0, until):
-        last = min(piece.half, nextafter(until - piece.middle, inf))
-        at, left = clear_until(
-            pairs, piece.coefficients, piece.radius, -piece.half, last, finest=_FINEST
-        )
-        clear = nextafter(piece.middle + at, 0.0)  # this covers the rounding of the sum
-        if left:
+    end, _ = stretch.clear_from(pairs) if stretch.applies else (inf, None)
+
+    def run_through(time: float) -> Event | None:
+        panels = _crossed(contacts, pieces, time)
+        if panels is None:
+            return None
+        faces = tuple(contacts.pattern.faces[panel] for panel in panels)
+        return Event(CONTACT, (time, time), faces=faces, detail="an edge runs through a face")
+
+    every = [(inf, Open.all_of(pairs))]
+    left = partial(not_separated, pairs)
+    return _enclosed(motion, pieces, every, left, pairs.named, run_through, end, clock)
+
+
+def _enclosed(
+    motion: PanelMotion,
+    pieces: PanelPieces,
+    phases: Sequence[tuple[float, Open]],
+    test: Test,
+    named: Callable[[Open], tuple[tuple[Panel, Panel], ...]],
+    touching: Callable[[float], Event | None],
+    end: float,
+    clock: Clock,
+) -> PanelClearance:
+    """The first contact, from a test that bodies stay apart and one that some touch at a time.
+
+    `phases` are times until which these pairs are tested, the last of them infinite. `end` is the
+    time from which on they are known to stay apart until all folds close.
+    """
+    clear, left = 0.0, Open.none()
+    for until, asked in phases:
+        until = min(end, motion.duration, until)
+        for piece in pieces.between(floor(clear * _PARTS) / _PARTS, until):
+            first = max(-piece.half, nextafter(clear - piece.middle, -inf))
+            if first >= piece.half:
+                continue
+            last = min(piece.half, nextafter(until - piece.middle, inf))
+            at, left = clear_until(
+                test, piece.coefficients, piece.radius, first, last, among=asked, finest=_FINEST
+            )
+            clear = nextafter(piece.middle + at, 0.0)  # this covers the rounding of the sum
+            if left or clock.passed:
+                break
+        if left or clock.passed or clear < nextafter(until, 0.0):
             break
-        if clock.passed:
-            return PanelClearance(UNDECIDED, clear, None, (), clock.said)
-    else:
+    if clock.passed and not left:
+        return PanelClearance(UNDECIDED, clear, None, (), clock.said)
+    if not left:
         if clear >= nextafter(end, 0.0):
             return PanelClearance(PROVED, motion.duration, _closing(motion, pi), (), "", end)
         if clear >= nextafter(motion.duration, 0.0):
-            return PanelClearance(PROVED, motion.duration, None, (), "")
-    event = _crossing(motion, contacts, pieces, clear) or _closing(motion, clear)
+            return PanelClearance(PROVED, motion.duration, _closing(motion, clear), (), "")
+    event = _crossing(motion, touching, clear) or _closing(motion, clear)
     if event is None:
         reason = "some panels are proved neither to stay apart nor to touch"
-        return PanelClearance(UNDECIDED, clear, None, pairs.named(left), reason)
+        return PanelClearance(UNDECIDED, clear, None, named(left), reason)
     low, high = event.time
     if high - low > _NARROW:
         reason = "some panels are not proved to stay apart long before others are proved to touch"
-        return PanelClearance(UNDECIDED, clear, event, pairs.named(left), reason)
+        return PanelClearance(UNDECIDED, clear, event, named(left), reason)
     return PanelClearance(PROVED, clear, event, (), "")
 
 
@@ -206,7 +259,7 @@ class PanelPairs(AnyPairs):
 
 
 def _crossing(
-    motion: PanelMotion, contacts: PanelContacts, pieces: PanelPieces, clear: float
+    motion: PanelMotion, touching: Callable[[float], Event | None], clear: float
 ) -> Event | None:
     """A contact that is proved to happen shortly after `clear`; None if none is found."""
     known = [event.time[1] for event in motion.events if event.kind == CONTACT]
@@ -215,8 +268,8 @@ def _crossing(
     begin, most = known[0], pi
     step = _FIRST
     while begin + step < most:
-        panels = _crossed(contacts, pieces, begin + step)
-        if panels is not None:
+        event = touching(begin + step)
+        if event is not None:
             good, bad = begin + step, begin + step / 2 if step > _FIRST else begin
             break
         step *= 2
@@ -226,10 +279,9 @@ def _crossing(
         middle = 0.5 * (good + bad)
         if not bad < middle < good:
             break
-        other = _crossed(contacts, pieces, middle)
-        panels, good, bad = (panels, good, middle) if other is None else (other, middle, bad)
-    faces = tuple(contacts.pattern.faces[panel] for panel in panels)
-    return Event(CONTACT, (clear, good), faces=faces, detail="an edge runs through a face")
+        other = touching(middle)
+        event, good, bad = (event, good, middle) if other is None else (other, middle, bad)
+    return replace(event, time=(clear, good))
 
 
 def _crossed(contacts: PanelContacts, pieces: PanelPieces, time: float) -> tuple[int, int] | None:

@@ -23,14 +23,16 @@ from exactfold.motion.curves.events import (
     FLAT_FOLD,
     LENGTH,
     SINGULAR,
+    STOP,
     Event,
 )
+from exactfold.motion.curves.stops import Stops
 from exactfold.motion.curves.zeros import zero_of
 from exactfold.motion.panels.closing import Closing
-from exactfold.motion.panels.contacts import PanelContacts
-from exactfold.motion.panels.following import goal_angle
+from exactfold.motion.panels.following import contacts_of, goal_angle
 from exactfold.motion.panels.in_motion import PanelsInMotion
 from exactfold.motion.panels.places import Placing
+from exactfold.motion.solid.plates import Solid
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 _START: Final = 0.03
@@ -71,6 +73,8 @@ class FamilyMotion(PanelsInMotion):
     gap: float = field(compare=False)
     seconds: float = field(default=0.0, compare=False)
     way: int | None = field(default=None, compare=False)
+    solid: Solid | None = None
+    stops: Stops | None = None
 
     @property
     def dimension(self) -> int:
@@ -160,6 +164,8 @@ def follow_family(
     frames: int = 60,
     held: int = 0,
     way: int | None = None,
+    solid: Solid | None = None,
+    stops: Stops | None = None,
 ) -> FamilyMotion:
     """Follow one motion of a sheet of rigid panels from a direction to first order.
 
@@ -168,6 +174,7 @@ def follow_family(
     `decompose` find such directions. The motion ends at the first contact of two panels, when a
     fold closes, or where it cannot be followed further; if `until` is an angle such as "90deg", at
     the first fold angle of that size. `way` is the number of the way that the direction represents.
+    `solid` and `stops` are those of `follow_panels`.
 
     Raises `UsageError` for an `until` or `frames` that make no sense, and `NotFollowedError` if no
     motion in this direction is found in floats.
@@ -201,7 +208,16 @@ def follow_family(
     closed = np.abs(path[-1]) > largest
     folds = tuple(fold for fold, yes in zip(pattern.folds, closed, strict=True) if yes)
     events = [] if end == LENGTH else [Event(end, (duration, duration), folds=folds)]
-    contact = PanelContacts(pattern).first(marks.tolist(), places)
+
+    def closed_at(times: FloatArray) -> FloatArray:
+        return _closed(closing, angles_at(times))
+
+    stop = None if stops is None else stops.first(pattern.folds, marks, closed_at)
+    if stop is not None:
+        duration, end, events = stop.time[1], STOP, [stop]
+        path = np.vstack([path[marks < duration], closed_at(np.array([duration]))])
+        marks = np.array([*marks[marks < duration], duration])
+    contact = contacts_of(pattern, solid, path).first(marks.tolist(), places)
     if contact is not None:
         if until == CONTACT:
             duration, end, events = contact.time[1], CONTACT, []
@@ -225,6 +241,8 @@ def follow_family(
         gap,
         clock.perf_counter() - began,
         way,
+        solid,
+        stops,
     )
 
 

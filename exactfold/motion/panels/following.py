@@ -14,7 +14,8 @@ from exactfold._support.verdict import PROVED
 from exactfold.errors import NotFollowedError, UsageError
 from exactfold.exact.numbers import approx_number
 from exactfold.motion.curves.drive import not_a_fold
-from exactfold.motion.curves.events import ANGLE, CONTACT, FLAT_FOLD, TURNING, Event
+from exactfold.motion.curves.events import ANGLE, CONTACT, FLAT_FOLD, STOP, TURNING, Event
+from exactfold.motion.curves.stops import Stops
 from exactfold.motion.curves.zeros import zero_of
 from exactfold.motion.panels.contacts import PanelContacts
 from exactfold.motion.panels.curves import FollowedCurve, LinearCurve, curve_of
@@ -27,6 +28,8 @@ from exactfold.motion.panels.followable import (
 from exactfold.motion.panels.listing import panel_ways, require_listed
 from exactfold.motion.panels.motion import AnglesAt, PanelMotion, all_angles, sampled_times
 from exactfold.motion.panels.places import Placing
+from exactfold.motion.solid.contacts import PlateContacts
+from exactfold.motion.solid.plates import Plates, Solid
 from exactfold.panels.decomposition import decompose
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
@@ -45,6 +48,8 @@ def follow_panels(
     frames: int = 60,
     by: Edge | None = None,
     held: int = 0,
+    solid: Solid | None = None,
+    stops: Stops | None = None,
 ) -> PanelMotion:
     """The motion of a sheet of rigid panels along a way, from the flat sheet until an event.
 
@@ -64,10 +69,12 @@ def follow_panels(
     `until` is "contact", the first contact of two panels or the first fold that closes, or "90deg",
     the first fold angle of that size, up to "180deg". `frames` is their number, at equal steps of
     time, or of the angle of the fold `by`. `held` is the number of the panel that does not move.
+    `solid` makes plates of the panels, so that a contact is one of plates. With `stops` the motion
+    ends at the latest where the first fold reaches its stop.
 
     Raises `NotFollowedError` for a sheet that is rigid or has no mode that can be followed; the
     latter does not mean that it cannot fold. Raises `UsageError` for arguments that do not exist or
-    do not fit.
+    do not fit, and `StuckPlatesError` for plates that stop the flat sheet.
 
     >>> from exactfold.pattern.families import single_vertex
     >>> from exactfold.pattern.opening import panels
@@ -102,7 +109,11 @@ def follow_panels(
         folds = _named(pattern, at_end > goal - _AT_180)
         duration, end, events = high, ANGLE, [Event(ANGLE, (low, high), folds=folds)]
     samples = sampled_times(angles_at, duration, _LEAST_SAMPLES)
-    contact = PanelContacts(pattern).first(samples.tolist(), places)
+    stop = None if stops is None else stops.first(pattern.folds, samples, angles_at)
+    if stop is not None:
+        duration, end, events = stop.time[1], STOP, [stop]
+        samples = np.array([*samples[samples < duration], duration])
+    contact = contacts_of(pattern, solid, angles_at(samples)).first(samples.tolist(), places)
     if contact is not None:
         if until == CONTACT:
             duration, end, events = contact.time[1], CONTACT, []
@@ -126,7 +137,25 @@ def follow_panels(
         end,
         gap,
         clock.perf_counter() - began,
+        solid,
+        stops,
     )
+
+
+def contacts_of(
+    pattern: PanelPattern, solid: Solid | None, angles: FloatArray
+) -> PanelContacts | PlateContacts:
+    """What finds contacts of panels without thickness, or of plates.
+
+    `angles` are those of a motion at many times, shape (times, folds). Raises `StuckPlatesError`.
+    """
+    if solid is None:
+        return PanelContacts(pattern)
+    signs = np.sign(angles).astype(int)
+    first = signs[(signs != 0).argmax(axis=0), np.arange(signs.shape[1])]
+    letters = {1: "V", -1: "M", 0: "F"}
+    by_fold = {f: letters[s] for f, s in zip(pattern.folds, first.tolist(), strict=True)}
+    return PlateContacts(Plates(pattern, solid), by_fold)
 
 
 def goal_angle(until: str) -> float:

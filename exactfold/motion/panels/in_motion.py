@@ -12,7 +12,9 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.motion.curves.motion_document import PanelMotionDocument
+from exactfold.motion.curves.stops import Stops
 from exactfold.motion.panels.places import Placing
+from exactfold.motion.solid.plates import Solid
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
@@ -37,6 +39,14 @@ class PanelsInMotion(SheetInMotion):
         @property
         def modes(self) -> tuple[int, ...]:
             """The numbers of the elementary modes that fold."""
+
+        @property
+        def solid(self) -> Solid | None:
+            """The plates whose contacts were looked for; None without thickness."""
+
+        @property
+        def stops(self) -> Stops | None:
+            """The stops of the folds; None if there are none."""
 
         @property
         def assignment(self) -> Mapping[Edge, str]:
@@ -100,6 +110,8 @@ class PanelsInMotion(SheetInMotion):
             "drive": None,
             "modes": list(self.modes),
             "way": self.way,
+            "plates": None if self.solid is None else self.solid.to_dict(),
+            "stops": None if self.stops is None else self.stops.to_dict(self.pattern.folds),
             **self.frames_reported(written),
             "warnings": [],
             "seconds": round(self.seconds, 3),

@@ -17,9 +17,11 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.errors import NotApplicableError, UsageError
 from exactfold.exact.surds import Number, exact
 from exactfold.motion.curves.events import Event
+from exactfold.motion.curves.stops import Stops
 from exactfold.motion.panels.curves import FollowedCurve, LinearCurve
 from exactfold.motion.panels.in_motion import PanelsInMotion
 from exactfold.motion.panels.places import Spot, Turn
+from exactfold.motion.solid.plates import Solid
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 
 Parameter: TypeAlias = "Number | float"
@@ -48,6 +50,7 @@ class PanelMotion(PanelsInMotion):
     shape (frames, folds), in the order of `pattern.folds`; an angle is positive for a valley.
     `events` are sorted by time. `end` is the kind of event at which the motion stops. `gap` is the
     largest distance by which panels fail to close in any frame, in the unit of the pattern.
+    Contacts are those of plates if `solid` is given; `stops` are those of the folds.
     """
 
     pattern: PanelPattern
@@ -63,6 +66,8 @@ class PanelMotion(PanelsInMotion):
     end: str
     gap: float = field(compare=False)
     seconds: float = field(default=0.0, compare=False)
+    solid: Solid | None = None
+    stops: Stops | None = None
 
     @property
     def modes(self) -> tuple[int, ...]:

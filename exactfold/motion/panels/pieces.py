@@ -34,10 +34,10 @@ from exactfold.motion.panels.motion import PanelMotion
 from exactfold.motion.panels.passing import Passed, Tangent, passes_of, spread
 from exactfold.motion.panels.places import Placing
 from exactfold.panels.vertex.stars import dot
-from exactfold.pattern.panel_pattern import Edge
+from exactfold.pattern.panel_pattern import Edge, Point
 
 ORDER = 12
-_BITS = 128
+BITS = 128
 _THIN = 1e-9
 """The largest error of a piece, in units of twice the sheet."""
 _WIDEST, _NARROWEST = 1 / 8, 2.0**-20
@@ -88,14 +88,25 @@ class PanelPieces:
     @cached_property
     def _flat(self) -> list[tuple[FloatArray, float]]:
         """The flat vertices in floats, with bounds of their errors."""
+        with ctx.workprec(BITS):
+            places = map(self._from_origin, self.motion.pattern.vertices)
+            return [self._vector(ball(x, BITS), ball(y, BITS)) for x, y in places]
+
+    def _from_origin(self, point: Point) -> Point:
+        """A point of the flat sheet relative to the first corner of the panel that is held."""
         pattern = self.motion.pattern
         x, y = pattern.vertices[pattern.faces[self._placing.held][0]]
-        with ctx.workprec(_BITS):
-            unit = arb(self.unit)
-            return [
-                _vector(ball(a - x, _BITS) / unit, ball(b - y, _BITS) / unit)
-                for a, b in pattern.vertices
-            ]
+        return point[0] - x, point[1] - y
+
+    def _vector(self, *parts: arb) -> tuple[FloatArray, float]:
+        """A vector in floats, in the unit of the pieces, with a bound of its error."""
+        return _vector(*(part / arb(self.unit) for part in parts))
+
+    @cached_property
+    def _carried(self) -> list[tuple[int, tuple[FloatArray, float]]]:
+        """The points whose places are wanted, each with a panel that carries it; the vertices."""
+        owners = self._placing.owners
+        return [(owners[v], point) for v, point in enumerate(self._flat)]
 
     @cached_property
     def _axes(self) -> dict[Edge, tuple[FloatArray, float]]:
@@ -103,9 +114,9 @@ class PanelPieces:
         axes = {}
         for _, _, _, i, j in self._placing.steps:
             d = self.motion.pattern.direction(i, j)
-            with ctx.workprec(_BITS):
-                length = ball(dot(d, d), _BITS).sqrt()
-                x, y = (ball(c, _BITS) / length for c in d)
+            with ctx.workprec(BITS):
+                length = ball(dot(d, d), BITS).sqrt()
+                x, y = (ball(c, BITS) / length for c in d)
                 axes[i, j] = _vector(x, y)
         return axes
 
@@ -120,8 +131,8 @@ class PanelPieces:
         for curve in self.motion.curves:
             gains.append({})
             if isinstance(curve, LinearCurve):
-                tangents = curve.exact_tangents(_BITS)
-                with ctx.workprec(_BITS):
+                tangents = curve.exact_tangents(BITS)
+                with ctx.workprec(BITS):
                     unit = abs(tangents[curve.driver])
                     gains[-1] = {self._numbers[e]: t / unit for e, t in tangents.items()}
         return gains
@@ -130,7 +141,7 @@ class PanelPieces:
     def _passes(self) -> list[list[Passed]]:
         """For each nonlinear mode, its transmissions in the order in which they are used."""
         return [
-            [] if isinstance(curve, LinearCurve) else passes_of(curve.mode, curve.driver, _BITS)
+            [] if isinstance(curve, LinearCurve) else passes_of(curve.mode, curve.driver, BITS)
             for curve in self.motion.curves
         ]
 
@@ -160,12 +171,25 @@ class PanelPieces:
         """
         return self._about(time, _NARROWEST)
 
+    def tangents_at(self, time: float) -> dict[Edge, tuple[arb, arb]] | None:
+        """For each fold that moves (c, s) with s / c = tan(angle / 2), c > 0 until it closes.
+
+        None if they are not known, as beyond a fold that is closed.
+        """
+        with capped(), ctx.workprec(BITS):
+            try:
+                pairs = self._tangents(arb(time))
+            except ValueError:  # python-flint: a divisor may be 0; or a fold is closed
+                return None
+            folds = self.motion.pattern.folds
+            return {folds[fold]: (c[0], s[0]) for fold, (c, s) in pairs.items()}
+
     def _piece(self, low: float, width: float) -> PanelPiece | None:
         """The piece of times from `low` on, if it is accurate enough."""
         return self._about(low + width / 2, width / 2)
 
     def _about(self, middle: float, half: float) -> PanelPiece | None:
-        with capped(), ctx.workprec(_BITS):
+        with capped(), ctx.workprec(BITS):
             try:
                 here = self._turns(arb(middle))
                 rests = self._rests(middle, half)
@@ -211,7 +235,7 @@ class PanelPieces:
         return rests
 
     def _placed(self, turns: dict[int, list[Turned]]) -> tuple[FloatArray, FloatArray]:
-        """The polynomials of all vertices in y = (time - middle) / half, and their errors."""
+        """The polynomials of all points in y = (time - middle) / half, and their errors."""
         placing, flat = self._placing, self._flat
         placed = {placing.held: still(ORDER)}
         for panel, before, fold, i, j in placing.steps:
@@ -222,12 +246,12 @@ class PanelPieces:
             sine, versine = turns[fold]
             new = product(rotation, spun(sine, versine, *self._axes[i, j]))
             placed[panel] = new, hinged(rotation, new, *flat[i], shift)
-        coefficients = np.empty((ORDER + 1, len(flat), 3))
-        radius = np.empty((len(flat), 3))
-        for v, point in enumerate(flat):
-            rotation, shift = placed[placing.owners[v]]
-            place = moved(rotation, *point, shift)
-            coefficients[:, v], radius[v] = place.polynomial.T, place.error
+        carried = self._carried
+        coefficients = np.empty((ORDER + 1, len(carried), 3))
+        radius = np.empty((len(carried), 3))
+        for k, (panel, point) in enumerate(carried):
+            place = moved(placed[panel][0], *point, placed[panel][1])
+            coefficients[:, k], radius[k] = place.polynomial.T, place.error
         return coefficients, radius
 
     def _tangents(self, time: arb) -> dict[int, Tangent]:
@@ -282,7 +306,7 @@ def polynomial(series: arb_series, rest: arb, half: float) -> Turned:
     return Turned(row, float(error.upper()) * (1 + 1e-9))
 
 
-def _vector(x: arb, y: arb) -> tuple[FloatArray, float]:
-    vector = np.array([float(x.mid()), float(y.mid())])
-    off = abs(x - arb(float(vector[0]))) + abs(y - arb(float(vector[1])))
+def _vector(*parts: arb) -> tuple[FloatArray, float]:
+    vector = np.array([float(part.mid()) for part in parts])
+    off = sum((abs(x - arb(float(c))) for x, c in zip(parts, vector, strict=True)), arb(0))
     return vector, float(off.upper()) * (1 + 1e-9)

@@ -9,10 +9,12 @@ from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.certificates.entries import Document, write_certificate
 from exactfold.errors import NotApplicableError
 from exactfold.motion.claims import Claim
+from exactfold.motion.curves.events import STOP, Event
 from exactfold.motion.curves.motion_document import PanelProofDocument
 from exactfold.motion.panels.certificate import certificate_of_panel_motion
 from exactfold.motion.panels.clearance import PanelClearance, with_proved_contact
 from exactfold.motion.panels.motion import PanelMotion
+from exactfold.motion.panels.reaching import with_proved_stop
 
 _NAMED = 3
 _AT_ONCE = 1e-9
@@ -26,7 +28,8 @@ class PanelProof:
     `contacts` says until when no two panels touch; it is None if nothing is proved of the motion.
     `certified` says whether there is a certificate, and `layers` is what it claims of the state in
     which all folds close together; None if nothing. `status` is PROVED if the whole motion is clear
-    or its first contact is enclosed. Otherwise `reason` says what is missing.
+    or its first contact is enclosed. Otherwise `reason` says what is missing. `stop` is the stop at
+    which the motion ends, with proved bounds of its time.
     """
 
     status: Verdict
@@ -35,6 +38,7 @@ class PanelProof:
     contacts: PanelClearance | None = None
     certified: bool = False
     layers: Claim | None = None
+    stop: Event | None = None
 
     @property
     def passed(self) -> bool:
@@ -92,6 +96,7 @@ class PanelProof:
             "node": None,
             "reached": None,
             "to": None,
+            "stop": None if self.stop is None else self.stop.to_dict(),
         }
 
     def __repr__(self) -> str:
@@ -115,12 +120,18 @@ def prove_panels(motion: PanelMotion) -> PanelProof:
         moved, contacts = with_proved_contact(motion)
     except NotApplicableError as error:
         return PanelProof(UNDECIDED, str(error), motion)
+    stop = None
+    if moved.end == STOP:
+        moved, stop = with_proved_stop(moved)
+        if stop is None:
+            reason = "it is not proved when the first fold reaches its stop"
+            return PanelProof(UNDECIDED, reason, moved, contacts)
     try:
         certificate_of_panel_motion(moved, contacts)
     except NotApplicableError as error:
-        return PanelProof(UNDECIDED, str(error), moved, contacts)
+        return PanelProof(UNDECIDED, str(error), moved, contacts, stop=stop)
     reason = "" if contacts.status is PROVED else _open(contacts)
-    return PanelProof(contacts.status, reason, moved, contacts, certified=True)
+    return PanelProof(contacts.status, reason, moved, contacts, certified=True, stop=stop)
 
 
 def _open(contacts: PanelClearance) -> str:

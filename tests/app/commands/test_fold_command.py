@@ -425,3 +425,51 @@ def test_the_certificate_of_a_family_proves_how_true_motions_begin(tmp_path, way
     asked = json.loads(path.read_text())["claims"]["letters"]
     letters = (x if x in "MV" else "U" for x in printed["assignment"].values())
     assert asked == "".join(letters)
+
+
+# --- thickness and stops -------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_plates_stop_a_miura_fold_where_they_meet(tmp_path):
+    proof = tmp_path / "proof.json"
+    options = ("--thickness", "8", "--stop", "130", "--certificate", str(proof))
+    result = run("fold", "miura", *options)
+    assert result.exit_code == OK
+    text = " ".join(result.stdout.split())
+    assert "8 thick, hinges in the middle, cut back by 8 from the folds; mountains at most" in text
+    assert "the first contact is between the times 2.214297436 and 2.2142974" in text
+    assert "(plates, at fold " in text
+    assert "; as plates 8 thick, with hinges in the middle" in run("check", str(proof)).stdout
+
+
+def test_the_first_stop_ends_a_motion():
+    result = run("fold", "zigzags", "--way", "3", "--stop", "120,10-14=40deg", "--json")
+    assert result.exit_code == OK
+    motion = json.loads(result.stdout)
+    assert motion["end"] == "stop"
+    assert motion["stops"]["10-14"] == "40"
+    assert motion["events"][-1]["folds"] == ["10-14"]
+    assert motion["duration"] == pytest.approx(40 * pi / 180)
+    assert motion["plates"] is None
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "message"),
+    [
+        (("--thickness", "8", "--trim", "0"), BAD_INPUT, "the flat sheet is stuck: plates of"),
+        (("--thickness", "99"), BAD_INPUT, "cannot be cut back by 99 from its folds"),
+        (("--thickness", "0"), USAGE, "the thickness is 0: give a positive number"),
+        (("--thickness", "1", "--hinge", "top"), USAGE, "'top' is none of middle, valley"),
+        (("--trim", "2"), USAGE, "--hinge and --trim go with --thickness"),
+        (("--stop", "190"), USAGE, "a stop at 190 degrees: give an angle between 0 and 180"),
+        (("--stop", "90,80"), USAGE, "'90,80' gives two stops for the same folds"),
+        (("--stop", "0-1=80"), USAGE, "there is no fold 0-1"),
+    ],
+)
+def test_plates_and_stops_that_make_no_sense(tmp_path, options, code, message):
+    proof = tmp_path / "proof.json"
+    result = run("fold", "miura", *options, "--certificate", str(proof))
+    assert result.exit_code == code
+    assert message in " ".join(result.stderr.split())
+    assert not proof.exists()

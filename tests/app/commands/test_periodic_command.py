@@ -14,6 +14,7 @@ from running import PROVED, UNDECIDED, run
 import exactfold
 from exactfold import schema
 from exactfold.app.pictures import directions_plot
+from exactfold.app.viewer.rolling import rolling_document
 from exactfold.branches import PeriodicCount, count_periodic
 from exactfold.errors import UsageError
 from exactfold.pattern import PeriodicPattern, read_cell
@@ -50,6 +51,51 @@ def test_the_answer_in_words(tmp_path: Path) -> None:
     twist = run("count", "square-twist-cell", "--direction", "1,2", "--certificate", tmp_path / "c")
     assert "irrational heights" in twist.stdout
     assert "no certificate was written" in twist.stderr
+
+
+def test_a_cell_is_folded_and_written(tmp_path: Path) -> None:
+    given = ("waterbomb-cell", "--direction", "1,2", "--way", "2", "--patch", "2,2")
+    for ending in ("fold", "glb", "csv"):
+        file = tmp_path / f"w.{ending}"
+        result = run("fold", *given, "--until", "30deg", "--frames", "3", "-o", file, "--json")
+        assert result.exit_code == PROVED, result.stderr
+        data = json.loads(result.stdout)
+        Draft202012Validator(schema("motion")).validate(data)
+        assert (data["theory"], data["cells"], data["direction"]) == ("periodic", [2, 2], [1, 2])
+        assert data["written"] == [str(file)]
+        assert file.stat().st_size > 1000
+    document = json.loads((tmp_path / "w.fold").read_text())
+    assert len(document["file_frames"]) == 3
+    words = run("fold", *given, "--until", "30deg", "--frames", "3").stdout
+    assert "2 across 1,2" in words
+    assert "followed in floats" in " ".join(words.split())
+    for arguments, message in (
+        (("waterbomb-cell",), "give --direction X,Y"),
+        ((*given, "--certificate", tmp_path / "c"), "no --certificate"),
+        ((*given[:3], "--letters", "MV"), "--letters does not go with --direction"),
+        ((*given[:3], "--signs", "+-+"), "--signs is for branches"),
+        (("waterbomb-cell", "--patch", "2,2"), "--patch goes with --direction"),
+    ):
+        assert message in run("fold", *arguments).stderr
+
+
+def test_a_cell_is_viewed(tmp_path: Path) -> None:
+    file = tmp_path / "w.html"
+    given = ("waterbomb-cell", "--direction", "1,2", "--patch", "2,1", "--frames", "3", "-o", file)
+    assert run("view", *given).exit_code == PROVED
+    assert "way 4: +++" in file.read_text()
+    one = run("view", *given, "--way", "2")
+    assert "1 way to fold" in one.stdout
+    assert "1 of 4 ways are shown" in file.read_text()
+    late = rolling_document("waterbomb-cell", (1, 2), cells=(1, 1), frames=2, limit=0)
+    assert late["status"] == "undecided" or late["ways"][0]["why"]
+    for arguments, message in (
+        (("waterbomb-cell", "-o", file), "give --direction X,Y"),
+        ((*given, "--signs", "+"), "only --way N"),
+        ((*given, "--way", "9"), "lists 4 ways"),
+        (("two-vertex", "--patch", "2,2", "-o", file), "--patch goes with --direction"),
+    ):
+        assert message in run("view", *arguments).stderr
 
 
 def test_rigid_panels_in_json_and_words() -> None:

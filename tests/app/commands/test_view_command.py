@@ -89,7 +89,7 @@ def test_ctrl_c_ends_the_server():
     assert (served.returncode, said) == (OK, "exactfold: the server has ended\n")
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_what_is_written_is_counted_as_count_counts_it(tmp_path):
     """The motion with the letters of the file comes besides the ways that have numbers."""
     target = tmp_path / "bird-base.html"

@@ -212,7 +212,8 @@ def test_a_motion_has_no_more_free_folds_than_its_way_has_dimensions():
     """Along one of these ways two folds seem free to first order, but the way is one curve."""
     result = exactfold.count("flapping-bird")
     ways = [way for way in panel_ways(result) if way.spaces]
-    motions = [exactfold.follow(result, way.number, frames=3) for way in ways]
-    assert [motion.dimension for motion in motions] == [way.dimension for way in ways] == [1] * 16
-    assert [motion.name for motion in motions] == [f"way {way.number}" for way in ways]
+    assert [way.dimension for way in ways] == [1] * 16
+    motions = [exactfold.follow(result, way.number, frames=3) for way in ways[9:12]]
+    assert [motion.dimension for motion in motions] == [1] * 3
+    assert [motion.name for motion in motions] == [f"way {way.number}" for way in ways[9:12]]
     assert max(len(Closing(m.pattern).drivers(m.angles[-1])) for m in motions) == 2

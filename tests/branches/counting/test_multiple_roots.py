@@ -149,8 +149,13 @@ def test_flat_sheets_with_more_conditions_than_unknowns(monkeypatch):
     assert count_branches(pleated(1)).status is UNDECIDED
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("turning", "simple", "distinct"), [(True, 352, 394), (False, 192, 257)])
+@pytest.mark.parametrize(
+    ("turning", "simple", "distinct"),
+    [
+        pytest.param(True, 352, 394, marks=pytest.mark.slow),
+        pytest.param(False, 192, 257, marks=pytest.mark.survey),
+    ],
+)
 def test_a_pleated_hypar_with_nine_vertices(turning, simple, distinct):
     """The branches that are not simple fold a diagonal, or leave the centre or corners flat."""
     result = count_branches(pleated(2, turning=turning))

@@ -42,7 +42,7 @@ def test_the_hub_of_a_ring_is_nearly_flat_by_what_was_rounded(digits: int) -> No
     assert near.to_dict() == {"vertices": [8], "text": near.text}
 
 
-@pytest.mark.slow
+@pytest.mark.survey
 def test_the_hub_is_named_at_the_last_digits_of_floats_too() -> None:
     """There, floats do not measure all of the twelve branches well."""
     sheet = taken(rounded(SHEETS["ring"](), 15))

@@ -21,9 +21,10 @@ from ...core.intervals import Interval
 from ...core.reading import items, natural, require
 from ...sheets.panels import Edge, Vector, pair
 from ..claims import Document
+from ..faces import FacePairs
 from ..lengths import GRID
 from .drive import length
-from .folding import Folding, PanelClaim, Panels
+from .folding import Folding, PanelClaim
 from .places import Piece, Places
 from .series import BITS, DEGREE, ONE, Polynomial, Series, polynomial, thin
 from .turning import Place, gap_signs, normals, turned
@@ -62,8 +63,8 @@ class Closed(PanelClaim):
 
     @staticmethod
     def said(claims: Document) -> str:
-        """That no panels touch later on."""
-        return ", nor later, until all folds that move are closed"
+        """That no panels touch later on, if the file says so."""
+        return ", nor later, until all folds that move are closed" if "closed" in claims else ""
 
 
 class LastStretch:
@@ -71,7 +72,7 @@ class LastStretch:
 
     def __init__(self, folding: Folding) -> None:
         self.places: Places = folding.places
-        self.panels: Panels = folding.panels
+        self.panels: FacePairs = folding.panels
         self.sheet = folding.drive.sheet
         both = Series([_POINT])
         pairs = folding.drive.tangents(lambda driver: (both, both))
@@ -104,7 +105,7 @@ class LastStretch:
             what = self._touching(meeting, self._meeting(meeting, last), last)
         require(not what, f"{what} may touch before the folds close")
 
-    def _touching(self, panels: Panels, first: Fraction, last: Fraction) -> str:
+    def _touching(self, panels: FacePairs, first: Fraction, last: Fraction) -> str:
         """Names of panels that planes are not found to part for first <= S <= last; "" if none."""
         stack = [(first, last)] if first < last else []
         while stack:
@@ -123,7 +124,7 @@ class LastStretch:
 
     # --- panels that meet in the end -------------------------------------------------------------
 
-    def _meeting(self, panels: Panels, last: Fraction) -> Fraction:
+    def _meeting(self, panels: FacePairs, last: Fraction) -> Fraction:
         """An S until which panels that meet at S = 0 do not touch for S > 0; 0 if none is known."""
         series = self.series(_NIL), self.series(Interval.of(last, BITS).joined(_NIL))
         images = self.images()

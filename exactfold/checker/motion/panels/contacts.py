@@ -11,8 +11,9 @@ from fractions import Fraction
 from ...core.reading import items, keys, natural, parse_rational, require, rounded
 from ..claims import Document
 from ..lengths import GRID
+from .cut import from_least
 from .drive import DrivenModes
-from .folding import Folding, PanelClaim, from_least
+from .folding import Folding, PanelClaim
 from .places import Piece
 from .times import Clock, time_of
 
@@ -34,6 +35,7 @@ class Clear(PanelClaim):
         long = clear <= folding.clock.time(last)[0]
         require(long, "the clear part of the motion is shorter than claimed")
         places, panels = folding.places, folding.panels
+        panels.until(last)
 
         def touching(piece: Piece | None) -> str:
             panels.spend(places.work)
@@ -52,16 +54,20 @@ class Clear(PanelClaim):
 class Contact(PanelClaim):
     """Some panels touch at or before the second `time`, and none touch before the first.
 
-    Either an edge of one of the two `faces` runs through the other face, or the `folds` are closed.
+    Either an edge of one of the two `faces` runs through the other face, or the plates of both have
+    a common `point`, or the `folds` are closed.
     """
 
     names = ("contact",)
 
     @classmethod
     def needed_by(cls, claims: Document) -> tuple[str, ...]:
-        """The key of the parameter at which an edge runs through a panel, if one does."""
-        through = "contact" in claims and claims["contact"]["kind"] == "contact"
-        return ("contact",) if through else ()
+        """The parameter at which an edge runs through a panel, if one does; for plates also a point
+        of both.
+        """
+        if "contact" not in claims or claims["contact"]["kind"] != "contact":
+            return ()
+        return ("contact", "point") if "plates" in claims else ("contact",)
 
     def check(self, folding: Folding) -> None:
         """Refuse a motion in which the panels are not proved to touch by then."""
@@ -117,7 +123,8 @@ def _told_apart(values: list[Fraction]) -> list[str]:
 
 
 def _check_crossing(folding: Folding, end: Fraction, claim: Document) -> None:
-    """Raise unless an edge of one of two panels runs through the other at the parameter `end`.
+    """Raise unless an edge of one of two panels runs through the other at the parameter `end`,
+    or a point is in the plates of both.
 
     Each panel is given by its corners, counter-clockwise from any of them.
     """
@@ -131,7 +138,9 @@ def _check_crossing(folding: Folding, end: Fraction, claim: Document) -> None:
     through = piece is not None and any(
         panels.crossing(piece, end, a, b) for a in touching[0] for b in touching[1]
     )
-    require(through, "no side of one panel is proved to run through the other panel")
+    thick = "no point is proved to be in the plates of both panels"
+    thin = "no side of one panel is proved to run through the other panel"
+    require(through, thick if "point" in folding.evidence else thin)
 
 
 def _check_closing(drive: DrivenModes, clock: Clock, claim: Document) -> None:

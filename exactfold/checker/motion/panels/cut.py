@@ -51,3 +51,9 @@ def _is_ear(sheet: PanelSheet, walk: list[int], k: int) -> bool:
 
 def _turn(sheet: PanelSheet, a: int, b: int, c: int) -> int:
     return cross(sheet.vector(a, b), sheet.vector(a, c)).sign()
+
+
+def from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
+    """The corners of a panel in the same cyclic order, beginning with the smallest number."""
+    first = corners.index(min(corners))
+    return corners[first:] + corners[:first]

@@ -10,9 +10,10 @@ from ...core.reading import counted, natural, require
 from ...sheets.panels import PanelSheet
 from ..claims import Claim, Document
 from ..faces import FacePairs
-from .cut import Triangle, cut
+from .cut import Triangle, cut, from_least
 from .drive import DrivenModes
 from .places import Places, shrunk
+from .plates import Plates
 from .times import Clock, OneRate, Rates
 
 _NAMED = 3
@@ -27,14 +28,19 @@ class Folding:
     """
 
     def __init__(self, sheet: PanelSheet, claims: Document, evidence: Document) -> None:
-        shrunk(sheet)
+        scale, self.evidence = shrunk(sheet), evidence
         self.drive = DrivenModes(
             sheet, claims["assignment"], claims["drivers"], evidence["vertices"]
         )
         rated = "rates" in claims
         self.clock: Clock = Rates(claims["drivers"], claims["rates"]) if rated else OneRate()
-        self.places = Places(self.drive, self.clock)
-        self.panels = Panels(self.drive, self.places)
+        self.panels: Panels | Plates
+        if "plates" in claims:
+            self.panels = Plates(self.drive, self.clock, scale, claims, evidence)
+            self.places = self.panels.places
+        else:
+            self.places = Places(self.drive, self.clock)
+            self.panels = Panels(self.drive, self.places)
 
     def parameter(self, value: Any) -> Fraction:
         """Read a parameter of the motion."""
@@ -65,11 +71,8 @@ class Panels(FacePairs):
         place = {v: 3 * v for v in flat}
         super().__init__(faces, names, [body[n] for n in names], {}, flat, place, MOST_TESTS)
 
-
-def from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
-    """The corners of a panel in the same cyclic order, beginning with the smallest number."""
-    first = corners.index(min(corners))
-    return corners[first:] + corners[:first]
+    def until(self, last: Fraction) -> None:
+        """All pairs of panels are to be parted until the parameter `last`."""
 
 
 class PanelClaim(Claim):
@@ -77,6 +80,25 @@ class PanelClaim(Claim):
 
     def check(self, folding: Folding) -> None:
         """Refuse a motion for which the claim does not hold."""
+
+
+class Thick(PanelClaim):
+    """The panels are `plates` of some `thickness`, with a `hinge` and a `trim`.
+
+    All that is claimed of contacts is about these plates. `Plates` reads this claim.
+    """
+
+    names = ("plates",)
+
+    @staticmethod
+    def said(claims: Document) -> str:
+        """What plates the panels are."""
+        plates = claims["plates"]
+        where = "in the middle" if plates["hinge"] == "middle" else "on the side of valleys"
+        return (
+            f"; as plates {plates['thickness']} thick, with hinges {where}, cut back by "
+            f"{plates['trim']} from the folds"
+        )
 
 
 class Driven(PanelClaim):
@@ -112,4 +134,5 @@ class OwnRates(PanelClaim):
     @staticmethod
     def said(claims: Document) -> str:
         """The words that say that there are rates."""
-        return " at rates of their own" if "rates" in claims else ""
+        own = any(rate != "1" for rate in claims.get("rates", ()))
+        return " at rates of their own" if own else ""

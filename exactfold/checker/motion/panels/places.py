@@ -8,7 +8,7 @@ it. Let R and S be rotations, and |R - P| <= e <= 1 and |S - Q| <= f in the spec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from functools import cmp_to_key, partial
 from itertools import pairwise
@@ -32,6 +32,8 @@ _UNIT: Polynomial = [ONE, *_STILL[1:]]
 _TRIES = 4
 _ROUNDED = DEGREE + 1  # the largest error of one rounded product with a number
 Row = tuple[Polynomial, Polynomial, Polynomial]
+Carried = tuple[int, tuple[Interval, Interval, Interval]]
+"""A panel, and a point that it carries, where it is in the flat sheet."""
 
 
 class Piece:
@@ -53,8 +55,11 @@ class Piece:
         return -floor(-(2 * s - self.low - self.high) / (self.high - self.low) * (1 << GRID))
 
 
-def shrunk(sheet: PanelSheet) -> None:
-    """Move a corner of the sheet to 0, and scale it by a power of 2: all coordinates below 1."""
+def shrunk(sheet: PanelSheet) -> Fraction:
+    """Move a corner of the sheet to 0, and scale it by a power of 2: all coordinates below 1.
+
+    Returns the scale.
+    """
     x, y = sheet.points[sheet.panels[0][0]]
     moved = [(a - x, b - y) for a, b in sheet.points]
     bits, most = 32, 0
@@ -62,8 +67,10 @@ def shrunk(sheet: PanelSheet) -> None:
         bits += bits
         ends = [c.enclosed(bits) for point in moved for c in point]
         most = max(max(abs(c.low), abs(c.high)) for c in ends)
-    factor = sheet.tower.number(Fraction(1 << bits, 1 << most.bit_length()))
+    scale = Fraction(1 << bits, 1 << most.bit_length())
+    factor = sheet.tower.number(scale)
     sheet.points = [(a * factor, b * factor) for a, b in moved]
+    return scale
 
 
 class Places:
@@ -71,10 +78,13 @@ class Places:
 
     So errors grow over half of the sheet only, and panels that fold onto the held panel are not
     turned along with it. `steps` has the other panels in the order in which they are placed, and
-    `owner` the first panel of each vertex.
+    `owner` the first panel of each vertex. If points are given that panels carry, their positions
+    take the place of those of the vertices.
     """
 
-    def __init__(self, drive: DrivenModes, clock: Clock) -> None:
+    def __init__(
+        self, drive: DrivenModes, clock: Clock, carried: Sequence[Carried] | None = None
+    ) -> None:
         self.drive, self.clock, sheet = drive, clock, drive.sheet
         ends = [[thin(c) for c in point] for point in sheet.points]
         self._flat = [[(c.low + c.high) >> 1 for c in point] for point in ends]
@@ -85,6 +95,14 @@ class Places:
         for panel in (self.held, *(after for after, *_ in self.steps)):
             for v in sheet.panels[panel]:
                 self.owner.setdefault(v, panel)
+        if carried is None:
+            zero = Interval(0, 0, BITS)
+            carried = [(self.owner[v], (x, y, zero)) for v, (x, y) in enumerate(ends)]
+        self.carried = carried
+        widest = max(c.high - c.low for _, point in carried for c in point)
+        self._blur = max(self._blur, 1 + widest)
+        farthest = max(sum(max(-c.low, c.high) for c in point) for _, point in carried)
+        self._reach = 1 + (farthest >> BITS)
         self._axes: dict[Edge, tuple[int, int, int]] = {}
         for _, _, i, j in self.steps:
             if pair(i, j) in drive.active:
@@ -193,12 +211,16 @@ class Places:
         if max(off for _, off, _, _ in placed.values()) > ONE:
             return [], 1 << 2 * BITS
         columns, most = [], 0
-        for v, (x, y) in enumerate(self._flat):
-            rows, off, shift, missed = placed[self.owner[v]]
-            most = max(most, missed + 2 * off + 2 * self._blur + 6 * _ROUNDED)
+        for panel, point in self.carried:
+            rows, off, shift, missed = placed[panel]
+            most = max(most, missed + self._reach * off + 3 * self._blur + 6 * _ROUNDED)
+            x, y, z = ((c.low + c.high) >> 1 for c in point)
             for row, s in zip(rows, shift, strict=True):
                 terms = zip(s, scaled(row[0], x), scaled(row[1], y), strict=True)
-                columns.append([p + q + r >> _SHIFT for p, q, r in terms])
+                column = [p + q + r for p, q, r in terms]
+                if z:
+                    column = [p + q for p, q in zip(column, scaled(row[2], z), strict=True)]
+                columns.append([p >> _SHIFT for p in column])
         return columns, most
 
 

@@ -1,0 +1,1 @@
+"""True motions of periodic sheets that roll up on cylinders."""

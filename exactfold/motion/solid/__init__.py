@@ -1,0 +1,1 @@
+"""Panels as plates of some thickness, and the contacts of such plates."""
