@@ -320,9 +320,9 @@ def design(**options: Any) -> int:
     """Move inner vertices until the sheet folds as wanted, and prove what is claimed of it.
 
     --letters asks for a way with these mountains and valleys. --maximise raises the
-    tolerance, or the margin of torques for one way. The new sheet has short exact
-    decimals. If a wish is not reached, the closest sheet is kept, with the reason;
-    so it is after Ctrl-C.
+    tolerance, or for one way the margin of torques or the motion until faces touch.
+    The new sheet has short exact decimals. If a wish is not reached, the closest
+    sheet is kept, with the reason; so it is after Ctrl-C.
     """
     from exactfold.app.commands.design import Asked
 

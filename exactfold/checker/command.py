@@ -46,6 +46,7 @@ from .motion.panels.certificate import PANEL_MOTION
 from .panels.certificate import PANELS
 from .panels.torques import PANEL_TORQUES
 from .sheets.meant import MEANT
+from .tolerance.certificate import TOLERANCE
 
 USAGE = "usage: python exactfold/checker CERTIFICATE [WORKERS]"
 
@@ -64,6 +65,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     BRANCH_TORQUES,
     MOTION,
     PANEL_MOTION,
+    TOLERANCE,
     MEANT,
     FLAT_STATE,
     FLAT_REFUTED,

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from exactfold._support.arrays import FloatArray, IndexArray
 from exactfold.branches.values.export import BranchExport
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import shown
@@ -18,6 +19,8 @@ from exactfold.interop.mechanisms import mjcf_text, urdf_texts
 from exactfold.interop.meshes import animated_gltf, gltf_bytes, obj_text, stl_bytes
 from exactfold.motion.curves.events import RETURN
 from exactfold.motion.curves.in_motion import SheetInMotion
+from exactfold.motion.panels.in_motion import PanelsInMotion
+from exactfold.motion.solid.plates import Plates
 from exactfold.pattern.triangulating.panels import triangles_of
 from exactfold.pattern.writing.fold_writing import (
     checked_target,
@@ -41,7 +44,8 @@ def write_motion(
     table of the fold angles in degrees, with a row for each frame (`angles_csv`). ".mjcf" and
     ".urdf" are the sheet as a mechanism: a model for MuJoCo that starts on the motion
     (`mjcf_text`), and a robot with the meshes of its panels in files NAME_0000.obj and so on
-    (`urdf_texts`). FOLD files keep panels as they are; in meshes panels are cut into triangles.
+    (`urdf_texts`). FOLD files keep panels as they are; in meshes panels are cut
+    into triangles, and with a thickness they are the closed surfaces of plates.
     `title` is the title of the pattern. See docs/folding.md.
 
     Raises `UsageError` for any other ending, `PackageMissingError`, `UnwritableFileError`.
@@ -78,22 +82,28 @@ def write_motion(
             write_text(target.with_name(beside), mesh)
         write_text(target, text)
         return (target, *map(target.with_name, meshes))
-    triangles = np.array(triangles_of(motion.pattern), dtype=np.intp)
+    frames, triangles = _meshes(motion)
     if ending in (".obj", ".stl"):
         files = [
             target.with_name(f"{target.stem}_{k:04}{ending}") for k in range(len(motion.times))
         ]
-        for file, coords in zip(files, motion.coords, strict=True):
+        for file, coords in zip(files, frames, strict=True):
             if ending == ".obj":
                 write_text(file, obj_text(coords, triangles, name))
             else:
                 write_bytes(file, stl_bytes(coords, triangles))
         return tuple(files)
-    model = animated_gltf(
-        motion.coords, triangles, name, returns=motion.end == RETURN, facts=motion.facts
-    )
+    model = animated_gltf(frames, triangles, name, returns=motion.end == RETURN, facts=motion.facts)
     write_bytes(target, gltf_bytes(model, binary=ending == ".glb"))
     return (target,)
+
+
+def _meshes(motion: SheetInMotion) -> tuple[FloatArray, IndexArray]:
+    """The corners of all frames, and the triangles: of the sheet, or of the plates of a motion."""
+    if isinstance(motion, PanelsInMotion) and motion.solid is not None:
+        plates = Plates(motion.pattern, motion.solid)
+        return plates.places(motion.coords), plates.surface
+    return motion.coords, np.array(triangles_of(motion.pattern), dtype=np.intp)
 
 
 def checked_ending(path: Path) -> str:

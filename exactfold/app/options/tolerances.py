@@ -30,19 +30,24 @@ class ToleranceOptions(WayOptions):
             "--output",
         ),
     ] = None
+    certificate: Annotated[
+        Path | None,
+        written("Write the evidence of the radius for `exactfold check`.", "OUT.json"),
+    ] = None
     seed: Annotated[int, number("Seed of the random moves.", "S", least=0)] = 0
     as_json: Json = False
     everything: Annotated[bool, flag("--all", text="List every vertex and every relation.")] = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        apart(self.output, self.file)
+        apart(self.output, self.file, self.certificate)
+        apart(self.certificate, self.file)
 
 
 def goal(text: object) -> str:
     """What is to be as large as possible."""
-    if text not in ("tolerance", "margin"):
-        raise typer.BadParameter(f"{text!r} is neither tolerance nor margin")
+    if text not in ("tolerance", "margin", "stroke"):
+        raise typer.BadParameter(f"{text!r} is none of tolerance, margin, stroke")
     return str(text)
 
 
@@ -51,12 +56,12 @@ class DesignOptions(WayOptions):
     """The options of `exactfold design`; `UsageError` if they do not go together."""
 
     maximise: Annotated[
-        Literal["tolerance", "margin"] | None,
+        Literal["tolerance", "margin", "stroke"] | None,
         typer.Option(
             parser=goal,
-            metavar="tolerance|margin",
+            metavar="tolerance|margin|stroke",
             help="Raise how far vertices may move (of all ways, if none is named), or the margin "
-            "of torques for one way.",
+            "of torques for one way, or how far one way folds before faces touch.",
         ),
     ] = None
     within: Annotated[
@@ -82,6 +87,8 @@ class DesignOptions(WayOptions):
         super().__post_init__()
         if self.letters is None and self.maximise is None:
             raise UsageError("give --letters that are wanted, or --maximise, or both")
-        if self.maximise == "margin" and not self.is_named:
-            raise UsageError("--maximise margin is about one way: give --way, --signs or --letters")
+        if self.maximise in ("margin", "stroke") and not self.is_named:
+            raise UsageError(
+                f"--maximise {self.maximise} is about one way: give --way, --signs or --letters"
+            )
         apart(self.output, self.file)

@@ -86,6 +86,10 @@ TORQUE_RAYS = 1 << 12  # rays in the proof that no torques have a larger margin
 TREE_JOINTS = 10  # folds to other vertices at one vertex of a tree
 TREE_CASES = 1 << 16  # cases of one vertex of a tree
 
+# --- tolerance ----------------------------------------------------------------------------------
+TOLERANCE_UNKNOWNS = 128  # unknowns of a zero that is followed as vertices move
+TOLERANCE_WORK = 1 << 26  # zeros times the third power of their unknowns
+
 # --- flat-folded states --------------------------------------------------------------------------
 IMAGE_BITS = 1 << 15  # bits of the numbers by which panels are turned
 FLAT_SIDES = 1 << 27  # points times lines of a folded sheet

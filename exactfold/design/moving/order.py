@@ -6,6 +6,7 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -24,6 +25,7 @@ from exactfold.design.moving.ascent import Place, raised
 from exactfold.design.moving.distances import fold_distances
 from exactfold.design.moving.goals import Distances, Margin, Sheets, signs_of
 from exactfold.design.moving.result import Designed
+from exactfold.design.moving.stroke import Stroke
 from exactfold.design.tolerance.parts import branch_part
 from exactfold.design.tolerance.tolerance import check_size, proved_radius
 from exactfold.errors import (
@@ -36,8 +38,9 @@ from exactfold.errors import (
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.loading import PatternLike, as_pattern
 
-Maximise: TypeAlias = Literal["tolerance", "margin"]
+Maximise: TypeAlias = Literal["tolerance", "margin", "stroke"]
 
+_NAMES = {"tolerance": "tolerance", "margin": "margin of torques", "stroke": "stroke"}
 _CANDIDATES = 12
 _STEPS = 40
 _TRIED = 2
@@ -63,10 +66,12 @@ def designed(
     """Move the inner vertices of a triangulated sheet with four corners until it folds as wanted.
 
     With `letters`, the result starts to fold with these mountains and valleys: `match` proves it.
-    With `maximise`, the tolerance or the margin of torques is raised: of the way with the letters,
-    of `branch`, or, for the tolerance, of all ways. No vertex moves by more than `within` along an
+    With `maximise`, the tolerance, the margin of torques or the stroke, the length of the motion
+    until faces touch, is raised: of the way with the letters, of `branch`, or, for the tolerance,
+    of all ways. No vertex moves by more than `within` along an
     axis, a tenth of the width by default, and corners and the vertices `fixed` stay. Sequential
-    linear programs in floating point propose places (docs/tolerance.md, 4); these are rounded to
+    linear programs in floating point, and a search for the stroke, propose places
+    (docs/tolerance.md, 4); these are rounded to
     decimals with few digits, and what is claimed of the new sheet is proved. If the letters are not
     reached, the status is UNDECIDED, the result is the closest sheet found, and `reason` says which
     fold is stuck. That none was found does not mean that there is none. A KeyboardInterrupt, and
@@ -275,7 +280,7 @@ class _Search:
         except KeyboardInterrupt:
             self.interrupted = True
         raised_ = value > before
-        what = "margin of torques" if self.maximise == "margin" else "tolerance"
+        what = _NAMES[self.maximise or "tolerance"]
         reason = f"the {what} is proved to be larger than before"
         if not raised_:
             reason = f"no sheet with a larger {what} was found"
@@ -298,8 +303,10 @@ class _Search:
         return self.branches[self.target or 0].sign_text
 
     def _value(self, sheet: CreasePattern) -> float:
-        """The proved tolerance or margin of a sheet, rounded down; 0 if nothing is proved."""
+        """What is proved of the goal of a sheet, rounded down; 0 if nothing is proved."""
         try:
+            if self.maximise == "stroke":
+                return self._stroke.proved(sheet)
             if self.maximise == "margin":
                 torques = actuate(sheet, self._signs)
                 if torques.branch.assignment != self.branches[self.target or 0].assignment:
@@ -324,6 +331,11 @@ class _Search:
         if self.maximise == "margin":
             yield from self._by_margin()
             return
+        if self.maximise == "stroke":
+            yield from self._stroke.raised(
+                self._made, self.sheets.start, self.within, self.clock, self._told
+            )
+            return
         chosen = list(range(len(self.zeros))) if self.target is None else [self.target]
         signs = np.array([signs_of(self.sheets.part, self.branches[k].assignment) for k in chosen])
         goal = Distances(
@@ -331,6 +343,19 @@ class _Search:
         )
         found = [place.point for place in self._followed(goal, _STEPS, "tolerance")]
         yield from found[: -_TRIED - 1 : -1]
+
+    @cached_property
+    def _stroke(self) -> Stroke:
+        return Stroke(self.branches[self.target or 0])
+
+    def _made(self, places: FloatArray) -> CreasePattern | None:
+        """The sheet of some places, to as many digits as can be asked for."""
+        return next(self._rounded(places, _DIGITS[-1:]), None)
+
+    def _told(self, stage: str, done: int, total: int) -> None:
+        self.steps = done
+        if self.progress is not None:
+            self.progress(stage, done, total)
 
     def _oriented(self, chosen: Sequence[int], signs: FloatArray) -> FloatArray:
         """The signs of letters, turned over where the zero is that of the other side."""
@@ -423,8 +448,8 @@ def _check(
             f"fold {flat[0][0]}-{flat[0][1]} cannot be asked to stay flat, as almost no sheet has "
             "flat folds: leave it free with the letter U"
         )
-    if maximise == "margin" and letters is None and branch is None:
-        raise UsageError("the margin is that of one way: name it, or give letters")
+    if maximise in ("margin", "stroke") and letters is None and branch is None:
+        raise UsageError(f"the {maximise} is that of one way: name it, or give letters")
     for v in fixed:
         if v not in range(len(pattern.vertices)):
             raise UsageError(f"there is no vertex {v} that could be fixed")

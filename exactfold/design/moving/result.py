@@ -24,14 +24,14 @@ class DesignDocument(TypedDict):
     """The sheet that was given."""
     status: VerdictText
     reason: str
-    goal: Literal["letters", "tolerance", "margin"]
+    goal: Literal["letters", "tolerance", "margin", "stroke"]
     signs: SignsText
     """The branch that the goal is about; empty if it is about all."""
     letters: Assignment
     """The letters that were asked for."""
     before: float | None
-    """Of the given sheet: the proved tolerance or margin; for letters, in floating point, how far
-    vertices may move before one of them is lost, negative if one is missing."""
+    """Of the given sheet: the proved tolerance, margin or stroke; for letters, in floating point,
+    how far vertices may move before one of them is lost, negative if one is missing."""
     after: float | None
     """The same of the new sheet; both are null if no vertex was moved."""
     largest_move: NotNegative
@@ -48,9 +48,9 @@ class Designed:
     """The sheet `pattern` that was made of `original` by moving vertices (docs/tolerance.md, 4).
 
     For the goal "letters", the status is PROVED if the new sheet has a branch with the `letters`;
-    otherwise it is the closest sheet found, and `reason` says which fold is stuck. For "tolerance"
-    and "margin" it is PROVED if the proved value `after` is larger than `before`. `signs` name the
-    branch.
+    otherwise it is the closest sheet found, and `reason` says which fold is stuck. For "tolerance",
+    "margin" and "stroke" it is PROVED if the proved value `after` is larger than `before`. `signs`
+    name the branch.
     """
 
     pattern: CreasePattern

@@ -111,6 +111,8 @@ class Tolerance:
     Within `upper` some sheet has another answer: `changed` is one, or panels lose their shape
     there, and `limit` says what happens. `estimate` comes from random moves. `closings` are the
     relations that ways of rigid panels need, each with the number of the first way that needs it.
+    `motions` are the densities of all folds on each way that is kept, in floats; it is empty where
+    the sheet has several parts, or ways that are not real, as no certificate is known for these.
     """
 
     pattern: CreasePattern | PanelPattern
@@ -127,6 +129,7 @@ class Tolerance:
     closings: tuple[tuple[int, Closing], ...]
     shortest: float
     seconds: float = field(default=0.0, compare=False)
+    motions: tuple[tuple[float, ...], ...] = field(default=(), compare=False)
 
     @property
     def relative(self) -> float:

@@ -94,7 +94,18 @@ class Search:
             vertices,
             (),
             self.frame.shortest,
+            motions=self._motions(),
         )
+
+    def _motions(self) -> tuple[tuple[float, ...], ...]:
+        """The densities of the folds on the ways that are kept, if one part has all folds."""
+        if len(self.parts) != 1 or self.parts[0].conditions.folds != self.frame.pattern.folds:
+            return ()
+        [part], [radii] = self.parts, self.radii
+        if not all(part.names[k] for k in self._used(part)):
+            return ()
+        rows = radii.densities[self._used(part)].real
+        return tuple(tuple(row) for row in rows.tolist())
 
     def _used(self, part: TrackedPart) -> list[int]:
         """The zeros on which the answer depends."""

@@ -252,6 +252,24 @@ class Plates:
         return np.array(rows, dtype=np.intp)
 
     @cached_property
+    def surface(self) -> IndexArray:
+        """The closed surfaces of all plates: triangles of corners, counter-clockwise from outside.
+
+        The corners have the numbers that `prisms` gives them; shape (triangles, 3).
+        """
+        rows, first = [], 0
+        for outline, triangles in zip(self.outlines, self.triangles, strict=True):
+            for a, b, c in triangles:
+                rows += [[2 * (first + k) for k in (a, c, b)]]
+                rows += [[2 * (first + k) + 1 for k in (a, b, c)]]
+            count = len(outline)
+            for k in range(count):
+                i, j = 2 * (first + k), 2 * (first + (k + 1) % count)
+                rows += [[i, j, j + 1], [i, j + 1, i + 1]]
+            first += count
+        return np.array(rows, dtype=np.intp)
+
+    @cached_property
     def panel_of(self) -> IndexArray:
         """The panel of each prism."""
         return np.repeat(

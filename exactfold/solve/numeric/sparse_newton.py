@@ -123,8 +123,8 @@ def solve(
     Next to a flat star g has a kink, at which a few vertices would shorten the steps of all. So the
     curvatures aimed at are larger by a square at first, which rounds all kinks (the path of
     docs/branch.md, Theorem 5 (b)). From the second step on this square shrinks with each full step
-    that halves the sum, and fast as soon as the sum does. It is 0 in the end. If that finds no
-    zero, and on sheets with at most 1000 unknowns, all steps are plain.
+    that halves the sum, as much as the sum does, and faster where the sum falls fast. It is 0 in
+    the end. If that finds no zero, and on sheets with at most 1000 unknowns, all steps are plain.
     """
     if start is None and sheet.n > MANY:
         end = _solve(sheet, signs, None, _SMOOTHING / sheet.n, progress)
@@ -156,7 +156,7 @@ def _solve(
                 if length == 0.0 or change <= _NOISE * size:
                     smoothing = 0.0
                 elif step > 1 and length == 1.0 and gain <= _HALVED:
-                    smoothing *= _SHARPER if gain <= _QUICK else _HALVED
+                    smoothing *= _SHARPER if gain <= _QUICK else gain
                 continue
             if length == 1.0 and change <= _CONVERGED * size:
                 return End(x, step, "")

@@ -60,7 +60,8 @@ def test_letters_that_are_refuted_or_not_reached(tmp_path):
     [
         ([], "--maximise"),
         (["--maximise", "margin"], "about one way"),
-        (["--maximise", "beauty"], "neither tolerance nor margin"),
+        (["--maximise", "stroke"], "about one way"),
+        (["--maximise", "beauty"], "none of tolerance, margin, stroke"),
         (["--maximise", "tolerance", "--within", "0"], "is not positive"),
         (["--maximise", "tolerance", "--fixed", "a"], "--fixed takes vertex indices"),
         (["--maximise", "tolerance", "-o", "new.svg"], "new.svg"),

@@ -74,3 +74,19 @@ def test_what_is_refused(options, code, words):
     assert result.exit_code == code
     assert words in result.stderr
     assert result.stdout == ""
+
+
+def test_the_radius_has_a_certificate(tmp_path):
+    proof = tmp_path / "radius.json"
+    result = run("tolerance", "two-vertex", "--signs", "+-", "--certificate", str(proof))
+    assert result.exit_code == PROVED
+    assert f"wrote {proof}: the evidence for `exactfold check`" in result.stderr + result.stdout
+    assert "have 1 way with the letters of the file; sha256" in run("check", str(proof)).stdout
+
+
+def test_where_there_is_no_certificate_this_is_said(tmp_path):
+    proof = tmp_path / "radius.json"
+    result = run("tolerance", "zigzags", "--way", 2, "--certificate", str(proof))
+    assert result.exit_code == PROVED
+    assert "no certificate was written: only a radius that is proved has" in result.stderr
+    assert not proof.exists()

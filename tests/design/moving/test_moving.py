@@ -13,7 +13,7 @@ import exactfold
 from exactfold._support.clock import Clock
 from exactfold.branches import count_branches, find_branch
 from exactfold.design import actuate, designed, match
-from exactfold.design.moving import order
+from exactfold.design.moving import order, stroke
 from exactfold.design.moving.ascent import raised
 from exactfold.design.moving.distances import face_distances, fold_distances
 from exactfold.design.tolerance.parts import branch_part
@@ -51,6 +51,39 @@ def test_the_tolerance_of_one_way_is_raised():
     pattern = exactfold.random_square(3, seed=1)
     of_one = designed(pattern, branch=count_branches(pattern)[1], maximise="tolerance")
     assert of_one.after == exactfold.tolerance(of_one.pattern, of_one.signs).radius > of_one.before
+
+
+@pytest.mark.slow
+def test_a_stroke_is_raised(monkeypatch):
+    """Against the first contacts that are proved of both sheets, with the same face held."""
+    monkeypatch.setattr(stroke, "_TRIALS", 10)
+    pattern = two_vertex()
+    branch = find_branch(pattern, "--")
+    found = designed(pattern, branch=branch, maximise="stroke")
+    assert found.status is exactfold.PROVED
+    held = exactfold.follow(branch, frames=2).pinned
+    for sheet, value in ((pattern, found.before), (found.pattern, found.after)):
+        motion = exactfold.follow(sheet, signs="--", frames=2, held=held)
+        assert motion.duration == pytest.approx(value, abs=1e-4)
+        [contact] = [e for e in exactfold.prove(motion).motion.events if e.kind == "contact"]
+        assert contact.time[0] == pytest.approx(value, abs=1e-5)
+    assert found.after > 1.05 * found.before
+    assert find_branch(found.pattern, "--").assignment == branch.assignment
+
+
+def test_a_stroke_that_is_interrupted_keeps_the_best_sheet(monkeypatch):
+    tried = []
+
+    def told(stage, done, total):
+        tried.append(stage)
+        if done == 3:
+            raise KeyboardInterrupt
+
+    branch = find_branch(two_vertex(), "--")
+    found = designed(two_vertex(), branch=branch, maximise="stroke", progress=told)
+    assert found.interrupted
+    assert found.after >= found.before > 2.5
+    assert tried[-1].startswith("stroke, at most ")
 
 
 def test_a_margin_is_raised():

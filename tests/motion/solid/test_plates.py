@@ -8,6 +8,7 @@ from math import atan, degrees, pi, tan
 
 import numpy as np
 import pytest
+import trimesh
 from folding_panels import strip
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,6 +17,7 @@ from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from exactfold.errors import StuckPlatesError, UsageError
+from exactfold.motion import follow_panels, write_motion
 from exactfold.motion.solid.contacts import PlateContacts
 from exactfold.motion.solid.overlaps import FACES, common_point, overlapping, widest
 from exactfold.motion.solid.plates import MIDDLE, VALLEY, Plates, Solid
@@ -189,6 +191,25 @@ def test_prisms_overlap_where_no_axis_parts_them(seed):
     for body in (a, b):
         for i, j, k in FACES:
             assert np.linalg.det([body[j] - body[i], body[k] - body[i], point - body[i]]) < 0
+
+
+def test_meshes_of_a_thick_motion_are_closed(tmp_path):
+    """Their volume is the thickness times the areas of the outlines, by Green's theorem."""
+    solid = Solid(Fraction(1, 5), MIDDLE, Fraction(1, 10))
+    motion = follow_panels(miura(2, 2), solid=solid, until="50deg", frames=2)
+    files = write_motion(motion, tmp_path / "plates.obj")
+    made = Plates(motion.pattern, solid)
+    area = 0.0
+    for panel in range(len(motion.pattern.faces)):
+        p = corners_of(made, panel)
+        q = np.roll(p, -1, axis=0)
+        area += float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()) / 2
+    for file in files:
+        mesh = trimesh.load(file, process=False)
+        assert mesh.is_watertight
+        assert mesh.is_winding_consistent
+        assert mesh.body_count == len(motion.pattern.faces)
+        assert mesh.volume == pytest.approx(area / 5)
 
 
 def test_letters_say_which_panels_are_one_body():

@@ -1,0 +1,1 @@
+"""Certificates of how far the vertices of a sheet may move."""
