@@ -1,4 +1,4 @@
-(** The program that verifies certificates (docs/formal.md): what it accepts is true. The numbers it is
+(** The program that verifies certificates (docs/formal.md): what passes is true. The numbers that it is
     given, and what it prepares from them, are not trusted. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Star KeyLemma Flat Complex Theorems Branches

@@ -1,12 +1,13 @@
 """Count every crease pattern below a folder, with this program and with an older one.
 
 python tests/benchmarks/real_files.py FOLDER [--against COMMIT] [--only TEXT] [--keep FOLDER]
-    [--csv FILE]
+    [--csv FILE] [--limit SECONDS]
 python tests/benchmarks/real_files.py FOLDER --noise FILE [--limit SECONDS] [--only TEXT]
     [--keep FOLDER]
 
 Every file is a process of its own, one after the other, which has 60 seconds. As the machine may
-have other work, this is its time or that of its processors, whichever is less. A file with several
+have other work, this is its time or that of its processors, whichever is less; `--limit` gives
+each count more of the former, so that it gets its share of the latter. A file with several
 sheets has the kind of its worst sheet. The answers are kept below `--keep`, one file of JSON lines
 a program, so that an interrupted run goes on where it stopped. The summary at the end is that of
 docs/real_files.md; `--csv` writes a row for each file, as docs/real_files.csv.
@@ -73,16 +74,14 @@ NOISE = (
 )
 """The columns of docs/real_noise.csv; lengths are shares of the size of the drawing."""
 
-BUSY = 3 * LIMIT
-"""No count takes longer, on a machine that has other work to do, too."""
 SLOWEST = 10 * LIMIT
-"""No command of `--noise` takes longer on such a machine."""
+"""No command takes longer, on a machine that has other work to do, too."""
 
 Line = dict[str, Any]
 
 
 def answered(
-    path: Path, source: Path, *options: str, command: str = "count", limit: float = BUSY
+    path: Path, source: Path, *options: str, command: str = "count", limit: float = SLOWEST
 ) -> Line:
     """What a command of the program below `source` answers, ended after `limit` seconds.
 
@@ -197,11 +196,16 @@ def kind_of(line: Line) -> tuple[str, str]:
 
 
 def of_sheets(answers: list[tuple[str, str]]) -> tuple[str, str]:
-    """The worst kind of the sheets of a file; what is said of each if all are complete."""
+    """The worst kind of the sheets of a file; what is said of each if all are complete or refused,
+    and the kinds if not.
+    """
     worst = max((kind for kind, _ in answers), key=KINDS.index)
-    alike = Counter(said if worst == KINDS[0] else kind for kind, said in answers)
-    each = "; ".join(f"{number} {said}" for said, number in alike.items())
-    return worst, f"{counted(len(answers), 'sheet')}: {each}"
+    short = len({kind for kind, _ in answers}) > 1
+    alike = Counter(kind if short or not said else said for kind, said in answers)
+    sheets = counted(len(answers), "sheet")
+    if len(alike) == 1:
+        return worst, f"{sheets}, each {next(iter(alike))}"
+    return worst, f"{sheets}: {'; '.join(f'{number} {said}' for said, number in alike.items())}"
 
 
 def helped(line: Line) -> str:
@@ -231,8 +235,14 @@ def program(commit: str | None) -> Iterator[Path]:
             subprocess.run([*git, "remove", "--force", str(tree)], check=True)
 
 
-def answers(paths: list[Path], folder: Path, commit: str | None, keep: Path) -> dict[str, Line]:
-    """The answer to every file by name, from the file of answers where it is there."""
+def answers(
+    paths: list[Path], folder: Path, commit: str | None, keep: Path, seconds: str
+) -> dict[str, Line]:
+    """The answer to every file by name, from the file of answers where it is there.
+
+    Programs of before `--limit` are not told of the usual one.
+    """
+    limit = [] if seconds == str(LIMIT) else ["--limit", seconds]
     kept: dict[str, Line] = {}
     if keep.exists():
         kept = {line["file"]: line for line in map(json.loads, keep.open())}
@@ -241,9 +251,9 @@ def answers(paths: list[Path], folder: Path, commit: str | None, keep: Path) -> 
             name = str(path.relative_to(folder))
             if name in kept:
                 continue
-            line = {"file": name, **answered(path, source)}
+            line = {"file": name, **answered(path, source, *limit)}
             if options := remedy_of(line):
-                line["remedy"] = answered(path, source, *options)
+                line["remedy"] = answered(path, source, *limit, *options)
             out.write(json.dumps(line) + "\n")
             out.flush()
             kept[name] = line
@@ -298,12 +308,12 @@ def write_files(programs: dict[str, dict[str, Line]], path: Path) -> None:
 
 def inexact(path: Path, seconds: str) -> Line:
     """What is inferred from a drawing, and both answers; `meant` is None if it is exact."""
-    read = answered(path, HERE, command="vertices", limit=SLOWEST)["result"] or {}
+    read = answered(path, HERE, command="vertices")["result"] or {}
     line: Line = {"meant": read.get("meant")}
     if line["meant"]:
-        line["of_meant"] = answered(path, HERE, "--limit", seconds, limit=SLOWEST)
+        line["of_meant"] = answered(path, HERE, "--limit", seconds)
         digits = ("--snap", "exact", "--limit", seconds)
-        line["of_digits"] = answered(path, HERE, *digits, limit=SLOWEST)
+        line["of_digits"] = answered(path, HERE, *digits)
     return line
 
 
@@ -374,7 +384,7 @@ def main() -> None:
     for heading, commit in (("before", arguments.against), ("now", None)):
         if heading == "now" or commit:
             kept = arguments.keep / f"{commit or 'now'}.jsonl"
-            programs[heading] = answers(paths, arguments.folder, commit, kept)
+            programs[heading] = answers(paths, arguments.folder, commit, kept, arguments.limit)
     print_summary(programs)
     if arguments.csv:
         write_files(programs, arguments.csv)

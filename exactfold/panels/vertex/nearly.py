@@ -23,6 +23,8 @@ _EXACT: Final = 1e-11
 _MOST_FOLDS: Final = 2000
 _MOST_MOTIONS: Final = 100
 _STARTS: Final = 10
+_NAMED: Final = 4
+"""So many folds that nearly fold are named."""
 
 
 def nearly_dependent(pattern: PanelPattern, limit: float, step: float) -> str:
@@ -73,11 +75,15 @@ def nearly_moves(pattern: PanelPattern, limit: float, *, rigid: bool) -> str:
         rows.append(row)
     _, values, turned = np.linalg.svd(np.concatenate(rows))
     values /= values[0]
-    near = values[(values > _EXACT) & (values < limit)]
+    near = np.flatnonzero((values > _EXACT) & (values < limit))
     if near.size:
+        weights = np.abs(turned[near[0]])
+        most = np.argsort(-weights, kind="stable")[:_NAMED]
+        named = [pattern.folds[k] for k in most if weights[k] > weights.max() / 2]
+        texts = ", ".join(f"{i}-{j}" for i, j in sorted(named))
         return (
-            "the lines of the folds nearly let more folds fold than they do, as where two folds "
-            f"between the same panels are nearly on one line, off by {near[0]:.1e}"
+            f"the lines of the folds nearly let {texts} fold, as where two folds between the same "
+            f"panels are nearly on one line, off by {values[near[0]]:.1e}"
         )
     motions = turned[int((values > _EXACT).sum()) :].T
     if not rigid or not 0 < motions.shape[1] <= _MOST_MOTIONS:

@@ -4,35 +4,36 @@ open Reading
 module V = Verified
 
 let usage = "usage: exactfold-verify FILE\n\n\
-  Verifies a certificate of all branches (version 1 of the compact form) or of one branch (version 1) of\n\
-  a convex triangulated sheet. Exit codes: 0 verified, 1 refuted, 2 usage, 3 not a certificate of these kinds.\n"
+  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a convex\n\
+  triangulated sheet, and says what of the file it does not verify.\n\
+  Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
+  70 a defect, or memory is short.\n"
 
-(* How many letters F the accepted roots have: the formal proof says nothing of them. *)
-let flat = ref 0
-let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
-
+let plural n word =
+  let ending = if n = 1 then word else if word.[String.length word - 1] = 'x' then
+    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ "s" in
+  Printf.sprintf "%d %s" n ending
 let not_verified text = Printf.printf "not verified here: %s\n" text
+let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
 
-let verified format = Printf.ksprintf (fun text ->
-  Printf.printf "VERIFIED  %s\n" text;
-  if !flat > 0 then not_verified (Printf.sprintf "the %d letters F" !flat)) format
-
-let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, but %s is true" key found expected
+(* The drawing and the numbered folds that are proposed are those of the file. *)
+let belongs sheet (d : V.drawing) (p : V.prepared) =
+  let numbered = List.mapi (fun name (i, j, l, m) -> (name, (((i, j), l), m))) (Array.to_list (folds sheet)) in
+  if d.points <> Array.to_list sheet.points || d.triangles <> List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles
+    || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
+  then failwith "the sheet that is proposed is not that of the file"
 
 let shown_sheet sheet (d : V.drawing) =
-  Printf.printf "sheet     %d vertices, %d inside and %d on the boundary, %d triangles, %d folds\ndigest    %s\n%!"
-    (Array.length sheet.points) (List.length d.inside) (List.length d.border) (List.length sheet.triangles)
-    (Array.length (folds sheet)) sheet.digest
-
-let whole_claim claims key = Z.to_string (whole key (entry key claims))
-
-let sheet_claims sheet (d : V.drawing) claims =
-  agrees "interior" (whole_claim claims "interior") (string_of_int (List.length d.inside));
-  agrees "sha256" (string "sha256" (entry "sha256" claims)) sheet.digest
+  Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
+    (plural (Array.length sheet.points) "vertex") (List.length d.inside) (List.length d.border)
+    (plural (List.length sheet.triangles) "triangle") (plural (Array.length (folds sheet)) "fold") sheet.digest
 
 (* --- all branches --- *)
 
+(* [flat] is the number of letters F, of which the formal proof says nothing. *)
 type root = { bits : int; center : Z.t array; letters : int -> bool option; flat : int }
+
+let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
 
 let signed bytes at width =
   let negative = Char.code (Bytes.get bytes (at + width - 1)) > 127 in
@@ -51,34 +52,41 @@ let block size folds number length data =
   only "block bits width centers radii folds exact open" j;
   if small "block" (entry "block" j) <> number then refuse "block %d is expected" number;
   if items "open" (entry "open" j) <> [] then invalid "block %d has open roots" number;
-  let bits = small "bits" (entry "bits" j) and width = small "width" (entry "width" j) in
+  let bits = small ~most:52 "bits" (entry "bits" j) and width = small ~least:1 ~most:8 "width" (entry "width" j) in
   let bytes key each = let found = decoded key (string key (entry key j)) in
     if Bytes.length found <> length * each then refuse "block %d: \"%s\" has another length" number key; found in
   let row = (folds + 7) / 8 in
   let centers = bytes "centers" (size * width) and letters = bytes "folds" row and radii = bytes "radii" 1 in
-  let exact = List.map (fun e -> (small "root" (entry "root" e), e)) (items "exact" (entry "exact" j)) in
+  let bit index k = Char.code (Bytes.get letters ((index * row) + (k / 8))) lsr (k mod 8) land 1 = 1 in
+  let read e =
+    only "root bits radius center assignment" e;
+    let index = small ~most:(length - 1) "root" (entry "root" e) and text = string "assignment" (entry "assignment" e) in
+    ignore (whole "radius" (entry "radius" e));
+    if String.length text <> folds then refuse "root %d has another number of letters" index;
+    let center = Array.of_list (List.map (whole "center") (items "center" (entry "center" e))) in
+    if Array.length center <> size then refuse "root %d has another number of heights" index;
+    (index, { bits = small ~most:4000 "bits" (entry "bits" e); letters = letter_of index text; flat = flats text; center }) in
+  let exact = List.map read (items "exact" (entry "exact" j)) in
   fun index ->
-    let given = List.filter (fun (k, _) -> k = index) exact in
-    if (List.length given = 1) <> (Bytes.get radii index = '\255') then
-      invalid "root %d of block %d is given twice or not at all" index number;
-    match List.assoc_opt index given with
-    | Some e ->
-      let text = string "assignment" (entry "assignment" e) in
-      if String.length text <> folds then refuse "root %d has another number of letters" index;
-      { bits = small "bits" (entry "bits" e); letters = letter_of index text; flat = flats text;
-        center = Array.of_list (List.map (whole "center") (items "center" (entry "center" e))) }
-    | None ->
+    let given = List.filter (fun (k, _) -> k = index) exact and radius = Char.code (Bytes.get radii index) in
+    if radius <> 255 && radius > 52 then refuse "root %d of block %d has no such radius" index number;
+    match given, radius = 255 with
+    | [ (_, root) ], true -> root
+    | [], false ->
+      for k = folds to (8 * row) - 1 do if bit index k then refuse "a bit of no fold is set" done;
       { bits; flat = 0; center = Array.init size (fun k -> signed centers (((index * size) + k) * width) width);
-        letters = fun k -> Some (Char.code (Bytes.get letters ((index * row) + (k / 8))) lsr (k mod 8) land 1 = 1) }
+        letters = fun k -> Some (bit index k) }
+    | _ -> invalid "root %d of block %d is given twice or not at all" index number
 
-let precisions = [ 56; 72; 96; 128; 256; 512; 1024 ]
+let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
 
 let all_branches header blocks claims =
   let evidence = entry "evidence" header in
   only "format version pattern evidence provenance" header;
   only "kind triangles chart block" evidence;
-  if string "kind" (entry "kind" evidence) <> "chambers" then refuse "unknown kind of evidence";
   only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches" claims;
+  ignore (entry "provenance" header);
+  if string "kind" (entry "kind" evidence) <> "chambers" then refuse "unknown kind of evidence";
   let sheet = sheet (entry "pattern" header) in
   if items "triangles" (entry "triangles" evidence) <> [] then
     refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
@@ -88,11 +96,19 @@ let all_branches header blocks claims =
   let size = Array.length inside in
   if List.length d.border <> 4 then refuse "the sheet has %d boundary vertices, not four" (List.length d.border);
   if size = 0 || size > 30 then refuse "%d vertices inside: between 1 and 30 are verified" size;
-  let length = small "block" (entry "block" evidence) in
-  if length <= 0 || 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
+  let length = small ~least:1 "block" (entry "block" evidence) in
+  if 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
   shown_sheet sheet d;
   let p = Proposing.prepared sheet d in
-  let folds = List.length p.V.folds in
+  belongs sheet d p;
+  let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
+  let claim key = Z.to_string (Z.of_int (small key (entry key claims))) in
+  List.iter (fun (key, expected) -> agrees key (claim key) expected)
+    [ ("interior", string_of_int size); ("boundary", "4"); ("folds", string_of_int folds); ("degrees_of_freedom", "1");
+      ("distinct", count); ("with_multiplicity", count); ("real", count); ("nonreal", "0") ];
+  agrees "sha256" (string "sha256" (entry "sha256" claims)) sheet.digest;
+  let continued = string "true_branches" (entry "true_branches" claims) in
+  if continued <> "proved" then invalid "the claim \"true_branches\" is not \"proved\", as in every file of this version";
   let blocks = Array.of_list blocks in
   let slot = Array.make (Array.length sheet.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
@@ -110,17 +126,19 @@ let all_branches header blocks claims =
       h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
     h.(unit) <- Z.shift_left Z.one bits;
     h in
-  (* what is proposed for a sign vector: with more and more digits, until floating point, or if careful
-     the verified test itself, finds all letters decided *)
+  let current = ref (-1) and flat = ref 0 in
+  (* What is proposed for a sign vector: with more and more digits, until floating point, or if careful the
+     verified test itself, finds all letters decided. It depends on the sign vector alone, and its array is
+     never changed after it is handed over; so the theorem, which is about functions, applies. *)
   let verify careful =
     let proposed = ref (-1, [||], fun _ -> None) in
+    current := -1;
     flat := 0;
     let propose e =
       let n = number e in
-      let known, _, _ = !proposed in
-      if known <> n then begin
+      if !current <> n then begin
+        current := n;
         let root = root n in
-        if Array.length root.center <> size then refuse "root %d has another number of heights" n;
         let rec refine = function
           | [] -> raise Exit
           | bits :: more ->
@@ -140,20 +158,19 @@ let all_branches header blocks claims =
     let top e = propose e; let _, h, _ = !proposed in h.(unit) in
     let given e = propose e; let _, h, _ = !proposed in fun u -> h.(u) in
     let asked e = propose e; let _, _, letters = !proposed in letters in
-    (try V.verify_all d p top given asked with Exit -> false), !proposed in
-  if not (fst (verify false)) then begin
-    let good, (last, _, _) = verify true in
-    if not good then invalid "the sheet or a root was not verified; the last one was root %d" last
+    try V.verify_all d p top given asked with Exit -> false in
+  if not (V.sound d p) then unverified "the sheet is not a convex triangulated one";
+  if not (verify false || verify true) then begin
+    let n = !current in
+    if n >= 0 then List.iter (fun (b : V.hub) -> if not (V.is_bent (root n).letters b) then
+      refuse "root %d: vertex %d has no fold with the letter M or V" n b.at_vertex) p.V.hubs;
+    unverified "root %d did not pass the test" n
   end;
   if size > 13 then prerr_newline ();
-  let count = string_of_int (1 lsl size) in
-  sheet_claims sheet d claims;
-  List.iter (fun (key, true_) -> agrees key (whole_claim claims key) true_)
-    [ ("distinct", count); ("with_multiplicity", count); ("real", count); ("nonreal", "0"); ("boundary", "4");
-      ("folds", string_of_int folds); ("degrees_of_freedom", "1") ];
-  agrees "true_branches" (string "true_branches" (entry "true_branches" claims)) "proved";
-  verified "exactly %s branches to second order, complex ones included; all are real and\n\
-    \          simple, one for each sign vector; all letters M and V. By theorem all_verified." count;
+  Printf.printf "VERIFIED  exactly %s branches to second order, complex ones included; all are real and\n\
+    \          simple, one for each sign vector; their folds have the letters M and V of the file.\n\
+    \          By theorem all_verified.\n" count;
+  if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
   not_verified "that every branch continues to a true motion"
 
 (* --- one branch --- *)
@@ -169,64 +186,91 @@ let one_branch data =
   let d = Proposing.drawing sheet in
   shown_sheet sheet d;
   let p = Proposing.prepared sheet d in
+  belongs sheet d p;
   let h = Array.of_list (List.map (whole "a height") (items "heights" (entry "heights" evidence))) in
+  if Z.leq (whole "denominator" (entry "denominator" evidence)) Z.zero then invalid "the denominator is not positive";
   let inside = Array.of_list (List.rev d.V.inside) in
-  let signs = Array.of_list (List.map (small "a vertex sign") (items "vertex_signs" (entry "vertex_signs" claims))) in
+  let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
+  let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
   if Array.length h <> Array.length sheet.points || Array.length signs <> Array.length inside then
     refuse "the numbers of heights, signs and vertices differ";
-  (* a vertex that is claimed to be flat lies in both closed nappes: it is verified in one *)
-  let ups = Array.make (Array.length h) false in
-  Array.iteri (fun k v -> ups.(v) <- signs.(k) > 0) inside;
+  let gauge = string "gauge" (entry "gauge" claims) in
+  if gauge = "saddle" then begin
+    if List.length d.border <> 4 then invalid "the gauge \"saddle\" needs four boundary vertices";
+    if Z.leq (Proposing.saddle sheet d h) Z.zero then invalid "the boundary saddle is not positive"
+  end
+  else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim";
   let claimed = Hashtbl.create 64 in
   Array.iteri (fun k v -> Hashtbl.replace claimed v signs.(k)) inside;
+  (* a vertex that is claimed to be flat lies in both closed nappes: the test is made in that of the heights *)
+  let ups = Array.make (Array.length h) false in
   List.iter (fun (b : V.hub) ->
     let v = b.at_vertex in
-    if Hashtbl.find claimed v = 0 then ups.(v) <- Z.gt (snd (V.measured (fun u -> h.(u)) h.(v) b.wedges)) Z.zero) p.V.hubs;
-  List.iter (fun (b : V.hub) ->
-    if Z.sign (fst (V.measured (fun u -> h.(u)) h.(b.at_vertex) b.wedges)) = 0 then
-      refuse "the heights have curvature 0 at vertex %d; heights with positive curvatures are verified here" b.at_vertex) p.V.hubs;
+    let curved, side = V.measured (fun u -> h.(u)) h.(v) b.wedges in
+    if Z.equal curved Z.zero then
+      refuse "the heights have curvature 0 at vertex %d; heights with positive curvatures are verified here" v;
+    ups.(v) <- (if Hashtbl.find claimed v = 0 then Z.gt side Z.zero else Hashtbl.find claimed v > 0)) p.V.hubs;
   let text = string "assignment" (entry "assignment" claims) in
   if String.length text <> List.length p.V.folds then refuse "the number of letters is wrong";
   let letters = letter_of 0 text in
-  flat := flats text;
-  if not (V.verify_one d p (fun v -> ups.(v)) (fun u -> h.(u)) letters) then
-    invalid "the sheet or the branch was not verified";
-  let bent = List.filter (fun b -> V.is_bent letters b) p.V.hubs in
+  if not (V.sound d p) then unverified "the sheet is not a convex triangulated one";
+  if not (V.verify_one d p (fun v -> ups.(v)) (fun u -> h.(u)) letters) then unverified "the branch did not pass the test";
+  let bent = List.filter (V.is_bent letters) p.V.hubs in
   List.iter (fun (b : V.hub) -> if Hashtbl.find claimed b.at_vertex = 0 then
     invalid "vertex %d has the sign 0, but a fold with a letter M or V" b.at_vertex) bent;
-  let others = Array.length inside - List.length bent in
-  verified "exactly one solution over these boundary heights lies in the closed nappes of these\n\
-    \          signs. It has the signs of %d vertices and all letters M and V. By theorem one_verified." (List.length bent);
-  if others > 0 then not_verified (Printf.sprintf "whether %d vertices are flat" others);
+  let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) 0 signs in
+  let others = Array.length inside - List.length bent and flat = flats text in
+  Printf.printf "VERIFIED  exactly one solution over these boundary heights lies in the closed nappes of %s.\n\
+    \          It has the letters M and V of the file, and the signs of the %s where they\n\
+    \          end. By theorem one_verified.\n"
+    (if zeros = 0 then "these signs" else "these signs,\n          at vertices with the sign 0 those of the heights")
+    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex");
+  if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
+  if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
   not_verified "the squared distance"
+
+(* --- files --- *)
+
+let known format version = refuse "the file is \"%s\", version %s; only version 1 of \"exactfold compact certificate\" \
+  and of \"exactfold branch\" are verified here" format version
 
 let verify path =
   let text = file path in
   let first = try String.sub text 0 (String.index text '\n') with Not_found -> text in
-  if String.contains first '\t' then
-    match List.map Fun.id (lines text) with
-    | header :: rest when rest <> [] ->
+  let size = String.length first in
+  let kind data = match entry "format" data, entry "version" data with
+    | Text format, Number version -> (format, version)
+    | _ -> refuse "the format or the version is missing" in
+  if size > 65 && first.[size - 65] = '\t' then
+    match lines text with
+    | header :: (_ :: _ as rest) ->
       let header = parse header in
-      if string "format" (entry "format" header) <> "exactfold compact certificate" || whole_claim header "version" <> "1" then
-        refuse "only version 1 of compact certificates is verified here";
+      (match kind header with
+      | "exactfold compact certificate", "1" -> ()
+      | format, version -> known format version);
       let reversed = List.rev rest in
       let claims = match parse (List.hd reversed) with
         | Entries [ ("claims", c) ] -> c
         | _ -> invalid "the file is UNFINISHED: its last line has no claims" in
       all_branches header (List.rev (List.tl reversed)) claims
-    | _ -> refuse "the file has no blocks"
+    | _ -> invalid "the file is UNFINISHED: it has no blocks"
   else begin
     let data = parse text in
-    if string "format" (entry "format" data) <> "exactfold branch" || whole_claim data "version" <> "1" then
-      refuse "only version 1 of certificates of one branch is verified here";
-    one_branch data
+    match kind data with
+    | "exactfold branch", "1" -> one_branch data
+    | format, version -> known format version
   end
 
 let () =
+  let fail code format = Printf.ksprintf (fun why ->
+    Printf.eprintf "exactfold-verify: %s: %s\n" Sys.argv.(1) why; exit code) format in
   match Sys.argv with
   | [| _; ("-h" | "--help") |] -> print_string usage
-  | [| _; path |] -> (try verify path with
+  | [| _; path |] -> (try verify path; flush stdout with
     | Invalid why -> Printf.printf "INVALID   %s\n" why; exit 1
-    | Refused why -> Printf.eprintf "exactfold-verify: %s\n" why; exit 3
-    | Sys_error why -> Printf.eprintf "exactfold-verify: %s\n" why; exit 3)
+    | Unverified why -> Printf.printf "NOT VERIFIED  %s\n" why; exit 1
+    | Refused why -> fail 3 "%s" why
+    | Stack_overflow -> fail 70 "the stack is too small for this file: run `ulimit -s unlimited` first"
+    | Sys_error why -> fail 3 "%s" why
+    | error -> fail 70 "nothing is known of this file: %s" (Printexc.to_string error))
   | _ -> prerr_string usage; exit 2

@@ -1,6 +1,7 @@
 (* What the verified program is given besides the certificate: the combinatorics of the sheet, its forms
-   in integers, and heights that satisfy strict inequalities. Nothing here is trusted: numbers that are
-   wrong can only make the verified program refuse. *)
+   in integers, and heights that satisfy strict inequalities. Nothing here is trusted: that the drawing and
+   its folds are those of the file is compared in main.ml, and other numbers that are wrong can only make
+   the verified program refuse. *)
 
 open Reading
 module V = Verified
@@ -26,7 +27,12 @@ let fan v steps =
     | None -> [ a ] in
   (walk start steps, inside)
 
-let rec border first v fans = let next = List.hd fans.(v) in if next = first then [ v ] else v :: border first next fans
+let border first fans rim =
+  let rec walk v left =
+    if left = 0 then refuse "the boundary is not one cycle through its %d vertices" rim;
+    let next = List.hd fans.(v) in
+    if next = first then [ v ] else v :: walk next (left - 1) in
+  walk first rim
 
 let rec rotated k l = if k = 0 then l else rotated (k - 1) (List.tl l @ [ List.hd l ])
 
@@ -64,7 +70,8 @@ let drawing sheet : V.drawing =
   if rim = [] then refuse "the sheet has no boundary";
   let fans = Array.map fst fans in
   refuse_reflex sheet rim fans;
-  let cycle = border (List.hd rim) (List.hd rim) fans in
+  let cycle = border (List.hd rim) fans (List.length rim) in
+  if List.length cycle <> List.length rim then refuse "the boundary is not one cycle through its %d vertices" (List.length rim);
   (* the greatest number first, so that the sign vectors come in the order of the roots *)
   { points = Array.to_list sheet.points; inside = List.rev inside; border = pinned sheet cycle;
     triangles = List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles; fans_of = Array.to_list fans }
@@ -174,7 +181,8 @@ let light slot (b : V.hub) =
 (* One step of Newton's method from heights h in units of 2^-bits towards curvatures 2^-aim. *)
 let step lights h bits aim =
   let n = Array.length lights in
-  let f = Array.map (fun x -> ldexp (Z.to_float x) (-bits)) h in
+  let unit = Z.shift_left Z.one bits in
+  let f = Array.map (fun x -> ratio x unit) h in
   let a = Array.make_matrix n n 0. and b = Array.make n 0. in
   let unit2 = Z.shift_left Z.one (2 * bits) in
   Array.iteri (fun row t ->
@@ -190,8 +198,11 @@ let step lights h bits aim =
   solve a b;
   Array.iter (fun t ->
     let v = t.hub.V.at_vertex in
-    let moved = ldexp b.(t.place) bits in
-    if Float.is_finite moved then h.(v) <- Z.add h.(v) (Z.of_float (Float.round moved))) lights
+    if Float.is_finite b.(t.place) then begin
+      let mantissa, exponent = Float.frexp b.(t.place) in  (* as an integer times a power of two *)
+      let digits = Z.of_float (ldexp mantissa 53) and shift = exponent - 53 + bits in
+      h.(v) <- Z.add h.(v) (if shift >= 0 then Z.shift_left digits shift else Z.shift_right digits (-shift))
+    end) lights
 
 (* Folds in floating point, to guess whether heights with curvatures 2^-aim decide all letters: ends,
    coefficients, and what the squared bend has to exceed. *)
@@ -204,8 +215,18 @@ let rough (p : V.prepared) =
   Array.of_list (List.map fold p.folds)
 
 let clear rough h bits aim =
-  let at v = ldexp (Z.to_float h.(v)) (-bits) in
+  let unit = Z.shift_left Z.one bits in
+  let at v = ratio h.(v) unit in
   Array.for_all (fun (i, j, l, m, a, b, c, slack) ->
     let x = at i in
     let bend = a *. (at j -. x) +. b *. (at l -. x) +. c *. (at m -. x) in
     bend *. bend > 4. *. ldexp slack (-aim)) rough
+
+(* What the boundary saddle of heights is multiplied with, and its sign: the affine dependency of the four
+   boundary vertices, in which the last of the pinned order has the weight 1. *)
+let saddle sheet (d : V.drawing) h = match d.border with
+  | [ a; b; c; last ] ->
+    let turn x y z = let at v = sheet.points.(v) in zturn (minus (at y) (at x)) (minus (at z) (at x)) in
+    let weights = [ (a, Z.neg (turn last b c)); (b, Z.neg (turn a last c)); (c, Z.neg (turn a b last)); (last, turn a b c) ] in
+    Z.mul (turn a b c) (List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights)
+  | _ -> Z.zero

@@ -3,12 +3,14 @@
 
 exception Refused of string  (* no certificate of a kind that is verified here *)
 exception Invalid of string  (* a claim or a digest is wrong *)
+exception Unverified of string  (* the verified test does not accept *)
 
 let refuse format = Printf.ksprintf (fun text -> raise (Refused text)) format
+let unverified format = Printf.ksprintf (fun text -> raise (Unverified text)) format
 let invalid format = Printf.ksprintf (fun text -> raise (Invalid text)) format
 
 (* JSON without floating-point numbers and without escapes in texts. *)
-type json = Null | Text of string | Number of string | Items of json list | Entries of (string * json) list
+type json = Null | Word of string | Text of string | Number of string | Items of json list | Entries of (string * json) list
 
 let parse s =
   let size = String.length s and at = ref 0 in
@@ -45,6 +47,7 @@ let parse s =
       while !at < size && not (String.contains ",]} \t\n\r" s.[!at]) do incr at done;
       match String.sub s first (!at - first) with
       | "null" -> Null
+    | ("true" | "false") as word -> Word word
       | word when word <> "" && String.for_all (fun c -> String.contains "-0123456789" c) word -> Number word
       | word -> refuse "'%s' at byte %d is not read" word first
   in
@@ -67,23 +70,35 @@ let only names = function
 
 let items what = function Items l -> l | _ -> refuse "%s is no list" what
 let string what = function Text t -> t | _ -> refuse "%s is no text" what
-let whole what = function
-  | Text t | Number t -> (try Z.of_string t with Invalid_argument _ -> refuse "%s is no whole number" what)
-  | _ -> refuse "%s is no whole number" what
+(* Whole numbers as the files have them: digits, without zeros in front, perhaps with a minus sign. *)
+let digits what t =
+  let size = String.length t in
+  let first = if size > 0 && t.[0] = '-' then 1 else 0 in
+  let good = size > first && String.for_all (fun c -> '0' <= c && c <= '9') (String.sub t first (size - first))
+    && (t.[first] <> '0' || t = "0") in
+  if good then Z.of_string t else refuse "%s is no whole number" what
 
-let small what j = let n = whole what j in if Z.fits_int n then Z.to_int n else refuse "%s is too large" what
+let whole what = function Text t | Number t -> digits what t | _ -> refuse "%s is no whole number" what
+
+(* A number that stands without quotes, between two limits. *)
+let small ?(least = 0) ?(most = max_int / 4) what = function
+  | Number t ->
+    let n = digits what t in
+    if Z.geq n (Z.of_int least) && Z.leq n (Z.of_int most) then Z.to_int n else refuse "%s is out of range" what
+  | _ -> refuse "%s is no number" what
 
 let rational what = function
   | Text t | Number t -> (match String.split_on_char '/' t with
-    | [ p ] -> (whole what (Text p), Z.one)
-    | [ p; q ] when Z.gt (whole what (Text q)) Z.zero ->
-      let p = whole what (Text p) and q = whole what (Text q) in
+    | [ p ] -> (digits what p, Z.one)
+    | [ p; q ] when Z.gt (digits what q) Z.zero ->
+      let p = digits what p and q = digits what q in
       let common = Z.gcd p q in (Z.div p common, Z.div q common)
     | _ -> refuse "%s is no rational number" what)
   | _ -> refuse "%s is no rational number" what
 
-(* A sheet: coordinates multiplied by a common denominator, and the digest of the pattern. *)
-type sheet = { points : (Z.t * Z.t) array; triangles : (int * int * int) list; unit : Z.t; digest : string }
+(* A sheet: coordinates multiplied by a common denominator and divided by a common factor, and the digest of
+   the pattern. *)
+type sheet = { points : (Z.t * Z.t) array; triangles : (int * int * int) list; digest : string }
 
 let triple what = function
   | [ a; b; c ] -> (small what a, small what b, small what c)
@@ -99,13 +114,15 @@ let sheet pattern =
   let inside v = 0 <= v && v < Array.length exact in
   List.iter (fun (a, b, c) -> if not (inside a && inside b && inside c) then refuse "a face has a vertex that is not there") triangles;
   let unit = Array.fold_left (fun n ((_, q), (_, s)) -> Z.lcm n (Z.lcm q s)) Z.one exact in
-  let scaled (p, q) = Z.mul p (Z.div unit q) in
+  let common = Array.fold_left (fun n ((p, q), (r, s)) ->
+    Z.gcd n (Z.gcd (Z.mul p (Z.div unit q)) (Z.mul r (Z.div unit s)))) Z.zero exact in
+  let scaled (p, q) = Z.div (Z.mul p (Z.div unit q)) (Z.max Z.one common) in
   let shown (p, q) = if Z.equal q Z.one then Z.to_string p else Z.to_string p ^ "/" ^ Z.to_string q in
   let first (a, b, c) = min (a, b, c) (min (b, c, a) (c, a, b)) in
   let lines = "exactfold pattern 1"
     :: List.map (fun (x, y) -> Printf.sprintf "v %s %s" (shown x) (shown y)) (Array.to_list exact)
     @ List.map (fun (a, b, c) -> Printf.sprintf "t %d %d %d" a b c) (List.sort compare (List.map first triangles)) in
-  { points = Array.map (fun (x, y) -> (scaled x, scaled y)) exact; triangles; unit;
+  { points = Array.map (fun (x, y) -> (scaled x, scaled y)) exact; triangles;
     digest = Sha256.hex (String.concat "\n" lines ^ "\n") }
 
 (* The folds in order, as the letters count them, with the third corners on their left and right. *)
@@ -133,16 +150,17 @@ let decoded what text =
 
 (* The JSON texts of a certificate in lines, whose digests are chained. *)
 let lines text =
-  let previous = ref "" and number = ref 0 in
-  List.filter_map (fun line ->
-    if line = "" then None else begin
-      incr number;
-      let tab = try String.index line '\t' with Not_found -> refuse "line %d has no digest" !number in
-      let body = String.sub line 0 tab in
-      previous := Sha256.hex (!previous ^ body);
-      if String.sub line (tab + 1) (String.length line - tab - 1) <> !previous then invalid "line %d is cut off or was altered" !number;
-      Some body
-    end) (String.split_on_char '\n' text)
+  let previous = ref "" in
+  let read number line =
+    let tab = try String.index line '\t' with Not_found -> invalid "line %d is cut off or was altered" number in
+    let body = String.sub line 0 tab in
+    previous := Sha256.hex (!previous ^ body);
+    if String.sub line (tab + 1) (String.length line - tab - 1) <> !previous then
+      invalid "line %d is cut off or was altered" number;
+    body in
+  match List.rev (String.split_on_char '\n' text) with
+  | "" :: rest -> List.mapi (fun k line -> read (k + 1) line) (List.rev rest)
+  | _ -> invalid "the last line is cut off"
 
 let file path =
   let channel = open_in_bin path in
