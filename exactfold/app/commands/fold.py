@@ -96,7 +96,8 @@ class Wanted(FoldOptions):
     def _rolling(self) -> int:
         """Follow a periodic sheet, shown as a patch of cells."""
         from exactfold.app import report
-        from exactfold.motion.periodic.rolling import CELLS, roll
+        from exactfold.motion.periodic.patch import CELLS
+        from exactfold.motion.periodic.rolling import roll
 
         if self.direction is None:
             raise UsageError(
@@ -104,7 +105,9 @@ class Wanted(FoldOptions):
                 "it rolls up, and --way N of `count --direction`"
             )
         if self.certificate is not None:
-            raise UsageError("motions of periodic sheets are followed in floats: no --certificate")
+            raise UsageError(
+                "motions of periodic sheets have no --certificate; --prove proves them"
+            )
         for option, value in (
             ("--letters", self.letters),
             ("--by", self.by),
@@ -126,6 +129,7 @@ class Wanted(FoldOptions):
                 cells=self.patch or CELLS,
                 until=self.until,
                 frames=self.frames,
+                proving=self.proving,
                 progress=bar,
             )
             bar("writing")
@@ -134,7 +138,7 @@ class Wanted(FoldOptions):
             print(json.dumps(motion.to_dict(name_of(self.file), written)))
         else:
             report.show(report.motion_report(motion, written))
-        return EXIT[motion.counted.status]
+        return EXIT[motion.status if self.proving else motion.counted.status]
 
     @property
     def _is_film(self) -> bool:

@@ -23,7 +23,7 @@ from exactfold.app.verbs.showing import shown
 from exactfold.app.viewer.page import checked_page, write_view
 from exactfold.app.viewer.rolling import write_rolling_view
 from exactfold.errors import UsageError
-from exactfold.motion.periodic.rolling import CELLS
+from exactfold.motion.periodic.patch import CELLS
 from exactfold.pattern.opening import Opened, is_cell_file
 
 
@@ -65,8 +65,8 @@ class Wanted(ViewOptions):
                 f"{self.file} is the cell of a periodic sheet: give --direction X,Y, across which "
                 "it rolls up"
             )
-        if self.proving or (self.is_named and self.way is None):
-            raise UsageError("only --way N, --patch and --frames go with --direction")
+        if self.is_named and self.way is None:
+            raise UsageError("only --way N, --patch, --frames and --prove go with --direction")
         with Bar("reading") as bar, interruptible():
             cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
             document = write_rolling_view(
@@ -77,6 +77,7 @@ class Wanted(ViewOptions):
                 ways=None if self.way is None else [self.way],
                 cells=self.patch or CELLS,
                 frames=self.frames,
+                proving=self.proving,
                 limit=clock,
                 progress=bar,
             )

@@ -133,12 +133,20 @@ class FoldOptions(WayOptions):
     ] = None
     direction: RollDirection = None
     patch: RollPatch = None
+    proving: Annotated[
+        bool,
+        flag(
+            "--prove",
+            text="With --direction: prove that one curve of true motions passes all frames. There "
+            "is no certificate of it.",
+        ),
+    ] = False
     as_json: Json = False
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.patch is not None and self.direction is None:
-            raise UsageError("--patch goes with --direction X,Y")
+        if (self.patch is not None or self.proving) and self.direction is None:
+            raise UsageError("--patch and --prove go with --direction X,Y")
         if self.way is not None or self.letters is not None:
             for option, value in (
                 ("--drive", self.drive),

@@ -19,7 +19,8 @@ from exactfold.branches.periodic.counting import count_periodic
 from exactfold.branches.periodic.result import PeriodicCount
 from exactfold.errors import ExactfoldError, UsageError
 from exactfold.exact.numbers import RationalLike
-from exactfold.motion.periodic.rolling import CELLS, Patch, rolled
+from exactfold.motion.periodic.patch import CELLS, Patch
+from exactfold.motion.periodic.rolling import rolled
 from exactfold.pattern.opening import Opened
 from exactfold.pattern.periodic.cell_files import as_cell
 from exactfold.pattern.writing.fold_writing import write_text
@@ -36,6 +37,7 @@ def rolling_document(
     ways: Sequence[int] | None = None,
     cells: tuple[int, int] = CELLS,
     frames: int = FRAMES,
+    proving: bool = False,
     limit: float | Clock = LIMIT,
     progress: Progress | None = None,
 ) -> ViewDocument:
@@ -43,7 +45,8 @@ def rolling_document(
 
     `ways` chooses ways by their numbers in `count_periodic`; without it, the first 32 are shown. A
     way that is not followed before the time limit says so. The motions are in floating point
-    (`roll`). Raises the errors of `count_periodic`, and `UsageError` for a way that is not listed.
+    (`roll`), and proved with `proving`. Raises the errors of `count_periodic`, and `UsageError` for
+    a way that is not listed.
 
     >>> document = rolling_document("waterbomb-cell", (1, 2), ways=[2], cells=(2, 2), frames=3)
     >>> [(way["name"], way["motion"]["end"]) for way in document["ways"]]
@@ -60,7 +63,7 @@ def rolling_document(
     for done, way in enumerate(wanted):
         if progress is not None:
             progress("following", done, len(wanted))
-        shown.append(_way(counted, way, patch, cells, frames, clock))
+        shown.append(_way(counted, way, patch, cells, frames, proving, clock))
     x, y = counted.direction
     all_ways = f"{in_words(len(counted), 'way')} to start folding in the direction {x},{y}"
     more = counted.pleats or counted.families
@@ -98,6 +101,7 @@ def write_rolling_view(
     ways: Sequence[int] | None = None,
     cells: tuple[int, int] = CELLS,
     frames: int = FRAMES,
+    proving: bool = False,
     limit: float | Clock = LIMIT,
     progress: Progress | None = None,
 ) -> ViewDocument:
@@ -112,6 +116,7 @@ def write_rolling_view(
         ways=ways,
         cells=cells,
         frames=frames,
+        proving=proving,
         limit=limit,
         progress=progress,
     )
@@ -125,6 +130,7 @@ def _way(
     patch: Patch,
     cells: tuple[int, int],
     frames: int,
+    proving: bool,
     clock: Clock,
 ) -> Way:
     """A way with its motion, or the reason why there is none."""
@@ -149,7 +155,10 @@ def _way(
         said = f"{clock.said}; `exactfold view` with --way {way} follows it alone"
         return {**plain, **not_followed(said)}
     try:
-        motion = rolled(counted, way, patch, cells=cells, frames=frames)
+        motion = rolled(counted, way, patch, cells=cells, frames=frames, proving=proving)
     except ExactfoldError as error:
         return {**plain, **not_followed(str(error))}
-    return {**plain, "motion": in_floats(motion)}
+    drawn = in_floats(motion)
+    if motion.tubes is not None:
+        drawn = {**drawn, "proved": True, "exists": True, "said": motion.reason}
+    return {**plain, "motion": drawn}

@@ -45,7 +45,8 @@ class FrameKeys(TypedDict):
 
     status: ProvedOrNot
     """Proved: of a branch, every frame is enclosed, so that a true configuration is near it; of
-    panels, all vertices close exactly at all fold angles. Undecided: the frames are floats."""
+    panels, all vertices close exactly at all fold angles; of a periodic sheet, one curve of true
+    motions passes all frames. Undecided: the frames are floats."""
     reason: str
     """What is proved of the frames, or how they were found: in floats along a proved branch, or
     along modes that truly fold."""

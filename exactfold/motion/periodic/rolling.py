@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi, radians
 from types import MappingProxyType
@@ -12,8 +12,9 @@ from typing import Any, Final, cast
 import numpy as np
 
 from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold._support.plurals import counted as in_words
 from exactfold._support.progress import Progress
-from exactfold._support.verdict import UNDECIDED, Verdict
+from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.periodic.counting import count_periodic
 from exactfold.branches.periodic.result import PeriodicCount
 from exactfold.errors import NotApplicableError, UsageError
@@ -24,107 +25,20 @@ from exactfold.motion.curves.events import ANGLE, CONTACT, FLAT_FOLD, SINGULAR, 
 from exactfold.motion.curves.in_motion import SheetInMotion
 from exactfold.motion.curves.motion_document import RollingMotionDocument
 from exactfold.motion.following import Goal
+from exactfold.motion.periodic.patch import CELLS, Patch
+from exactfold.motion.periodic.tubes import prove_curve
 from exactfold.motion.periodic.wrapping import Wrapping
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
 from exactfold.pattern.periodic.cell_files import as_cell
-from exactfold.pattern.periodic.cells import Corner, Face
-from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 from exactfold.rigidity.equations.periodic import PeriodicProblem
 from exactfold.solve.numeric.periodic_rays import PeriodicRays
 
-CELLS: Final = (5, 5)
-"""How many cells are shown, along both lattice vectors, unless another number is asked for."""
-MOST_CELLS: Final = 40
 _STEP: Final = 0.02
 _LEAST: Final = 1e-7
 _TURN: Final = radians(3.0)
 _MOST_STEPS: Final = 4000
 _HALVINGS: Final = 40
-
-
-@dataclass(frozen=True)
-class Patch:
-    """A sheet of n x m cells: vertex k is the corner `corners[k]` of the periodic sheet."""
-
-    pattern: CreasePattern
-    corners: tuple[Corner, ...]
-
-    @classmethod
-    def of(cls, sheet: PeriodicPattern, cells: tuple[int, int]) -> Patch:
-        """The faces of n x m cells; those that meet the others in a corner only are left out.
-
-        Raises `UsageError` for a bad number of cells.
-        """
-        if min(cells) < 1 or max(cells) > MOST_CELLS:
-            raise UsageError(
-                f"{cells[0]},{cells[1]} cells: give 1 to {MOST_CELLS} in each direction"
-            )
-        faces: list[Face] = [
-            (_moved(a, k, m), _moved(b, k, m), _moved(c, k, m))
-            for k in range(cells[0])
-            for m in range(cells[1])
-            for a, b, c in sheet.faces
-        ]
-        kept = _disk(faces, len(faces) // 2)
-        corners = sorted({corner for face in kept for corner in face}, key=lambda c: (c[1:], c))
-        number = {corner: k for k, corner in enumerate(corners)}
-        triangles = [[number[corner] for corner in face] for face in kept]
-        pattern = CreasePattern([sheet.place(corner) for corner in corners], triangles)
-        return cls(pattern, tuple(corners))
-
-    def letters(self, sheet: PeriodicPattern, letters: str) -> dict[Edge, str]:
-        """The letter of each fold, from one letter for each edge of the cell."""
-        known = dict(zip(sheet.edges, letters, strict=True))
-        found = {}
-        for fold in self.pattern.folds:
-            (u, i, j), (v, k, m) = (self.corners[end] for end in fold)
-            side = (u, v, k - i, m - j)
-            found[fold] = known.get(side) or known[v, u, i - k, j - m]
-        return found
-
-
-def _moved(corner: Corner, i: int, j: int) -> Corner:
-    return corner[0], corner[1] + i, corner[2] + j
-
-
-def _disk(faces: Sequence[Face], first: int) -> list[Face]:
-    """Faces that form a disk with one of them: each is added along one, two or three sides.
-
-    Along one side it is added only if its third corner is new.
-    """
-    sides: dict[frozenset[Corner], list[int]] = {}
-    for k, face in enumerate(faces):
-        for n in range(3):
-            sides.setdefault(frozenset((face[n], face[n - 1])), []).append(k)
-    kept, corners, waiting = {first}, set(faces[first]), [first]
-    while waiting:
-        face = faces[waiting.pop(0)]
-        around = {k for n in range(3) for k in sides[frozenset((face[n], face[n - 1]))]} - kept
-        for k in sorted(around):
-            known = {
-                end
-                for n in range(3)
-                for side in [frozenset((faces[k][n], faces[k][n - 1]))]
-                if kept.intersection(sides[side])
-                for end in side
-            }
-            if corners.intersection(faces[k]) == known:
-                kept.add(k)
-                corners.update(faces[k])
-                waiting += [k, *_around(faces, sides, k, kept)]
-    return [faces[k] for k in sorted(kept)]
-
-
-def _around(
-    faces: Sequence[Face], sides: Mapping[frozenset[Corner], list[int]], face: int, kept: set[int]
-) -> Iterator[int]:
-    """The faces that are kept and share a side with a neighbour of a face: it may fit now."""
-    for n in range(3):
-        for k in sides[frozenset((faces[face][n], faces[face][n - 1]))]:
-            for m in range(3):
-                near = sides[frozenset((faces[k][m], faces[k][m - 1]))]
-                yield from (other for other in near if other in kept and k not in kept)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -135,7 +49,9 @@ class RollingMotion(SheetInMotion):
     ratio of their angles is that of n . l for the two lattice vectors l, for the direction n. `way`
     is the number of the branch in `counted`. Times are lengths of the curve of solutions from the
     flat sheet, in units of its own. `screws` has, for each frame, the angle in radians and the
-    advance of both screws. The motion was followed in floats.
+    advance of both screws. The motion was followed in floats; if `tubes` is a number, so many tubes
+    prove that one curve of true motions leads from the flat sheet past all frames, and each unknown
+    of a frame is within `radius` of a point of it. Contacts are in floats.
     """
 
     counted: PeriodicCount
@@ -150,6 +66,8 @@ class RollingMotion(SheetInMotion):
     end: str
     seconds: float = field(default=0.0, compare=False)
     bounds: None = None
+    tubes: int | None = None
+    radius: float = field(default=0.0, compare=False)
 
     @property
     def pattern(self) -> CreasePattern:
@@ -158,12 +76,17 @@ class RollingMotion(SheetInMotion):
 
     @property
     def status(self) -> Verdict:
-        """UNDECIDED: the frames were found in floats."""
-        return UNDECIDED
+        """PROVED if tubes prove the motion, else UNDECIDED."""
+        return UNDECIDED if self.tubes is None else PROVED
 
     @property
     def reason(self) -> str:
         """How the frames were found."""
+        if self.tubes is not None:
+            return (
+                f"one curve of true motions without a gap, {in_words(self.tubes, 'tube')}; each "
+                f"frame is within {self.radius:.1e} of it; contacts are in floats"
+            )
         branch = self.counted[self.way - 1]
         if "0" not in branch.vertex_signs and not self.counted.pleats:
             return (
@@ -261,6 +184,7 @@ def roll(
     cells: tuple[int, int] = CELLS,
     until: str | float = CONTACT,
     frames: int = 60,
+    proving: bool = False,
     progress: Progress | None = None,
 ) -> RollingMotion:
     """The motion of a periodic sheet along a branch, shown as n x m cells.
@@ -269,7 +193,8 @@ def roll(
     pseudo-arclength (docs/tessellations.md, Theorem 18). `way` is the number in the list of
     `count_periodic`; `cells` are the numbers of cells along both lattice vectors, and `until` is
     "contact", when two faces of the patch meet or a fold closes, or a fold angle such as "90deg".
-    Lengths are those of the pattern. The middle face of the patch is held.
+    Lengths are those of the pattern. The middle face of the patch is held. With `proving`, the
+    curve is proved, too (`prove_curve`); if that fails, the `status` stays UNDECIDED.
 
     Raises the errors of `count_periodic`, `UsageError` for a way that is not in the list or a bad
     goal, and `NotApplicableError` for a branch with flat vertices, at which the motion is not
@@ -283,7 +208,16 @@ def roll(
     _goal(until)  # before the work
     patch = Patch.of(pattern, cells)
     counted = count_periodic(pattern, direction, progress=progress)
-    return rolled(counted, way, patch, cells=cells, until=until, frames=frames, progress=progress)
+    return rolled(
+        counted,
+        way,
+        patch,
+        cells=cells,
+        until=until,
+        frames=frames,
+        proving=proving,
+        progress=progress,
+    )
 
 
 def _goal(until: str | float) -> Goal:
@@ -301,6 +235,7 @@ def rolled(
     cells: tuple[int, int],
     until: str | float = CONTACT,
     frames: int = 60,
+    proving: bool = False,
     progress: Progress | None = None,
 ) -> RollingMotion:
     """The motion of a branch that was counted; `patch` has the given number of cells. See `roll`.
@@ -317,6 +252,7 @@ def rolled(
     path = _Path(wrapping, counted, patch, goal)
     path.follow(progress)
     places = path.frames(frames)
+    proof = prove_curve(wrapping, places) if proving else None
     coords = np.array([path.held(place) for place in places])
     hinges = hinges_of(patch.pattern)
     angles = np.unwrap(fold_angles_of(coords, hinges), axis=0)
@@ -333,6 +269,8 @@ def rolled(
         path.events,
         path.end,
         time.perf_counter() - begin,
+        tubes=None if proof is None else proof.tubes,
+        radius=0.0 if proof is None else max(proof.radii),
     )
 
 

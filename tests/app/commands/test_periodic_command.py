@@ -66,15 +66,17 @@ def test_a_cell_is_folded_and_written(tmp_path: Path) -> None:
         assert file.stat().st_size > 1000
     document = json.loads((tmp_path / "w.fold").read_text())
     assert len(document["file_frames"]) == 3
+    proved = run("fold", *given, "--until", "30deg", "--frames", "3", "--prove", "--json")
+    assert json.loads(proved.stdout)["status"] == "proved"
     words = run("fold", *given, "--until", "30deg", "--frames", "3").stdout
     assert "2 across 1,2" in words
     assert "followed in floats" in " ".join(words.split())
     for arguments, message in (
         (("waterbomb-cell",), "give --direction X,Y"),
-        ((*given, "--certificate", tmp_path / "c"), "no --certificate"),
+        ((*given, "--certificate", tmp_path / "c"), "have no --certificate"),
         ((*given[:3], "--letters", "MV"), "--letters does not go with --direction"),
         ((*given[:3], "--signs", "+-+"), "--signs is for branches"),
-        (("waterbomb-cell", "--patch", "2,2"), "--patch goes with --direction"),
+        (("waterbomb-cell", "--patch", "2,2"), "--patch and --prove go with"),
     ):
         assert message in run("fold", *arguments).stderr
 

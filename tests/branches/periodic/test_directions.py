@@ -167,3 +167,19 @@ def test_the_tangent_test_refuses_if_the_forms_of_other_flat_vertices_are_missin
 def test_a_direction_must_be_one_or_all() -> None:
     with pytest.raises(UsageError):
         exactfold.count("waterbomb-cell", direction="some")  # type: ignore[call-overload]
+
+
+def test_a_vertex_with_four_folds_may_be_flat_for_all_directions() -> None:
+    """Vertices 0 and 2 lie in a parallelogram of loop edges of vertex 1."""
+    cell = random_cell(3, 421, 64, flips=3)
+    assert [cell.degree(v) for v in range(3)] == [4, 10, 4]
+    assert [edge for edge in cell.edges if edge[0] == edge[1]] == [(1, 1, 1, 0), (1, 1, 1, 1)]
+    for direction in ((31, 17), (-13, 29), (5, 47), (1, 7), (2, -1), (0, 1)):
+        result = count_periodic(cell, direction)
+        assert result.status is Verdict.PROVED
+        assert not result.pleats
+        (flat,) = (branch for branch in result if "0" in branch.vertex_signs)
+        assert (flat.vertex_signs[2], flat.multiplicity) == ("0", 2)
+    with pytest.raises(OpenVertexError, match="flat on a whole curve"):
+        list(Crossings(AllDirections.of(cell), Clock()).places(2))
+    assert count_directions(cell).status is UNDECIDED

@@ -10,7 +10,8 @@ import pytest
 from exactfold.branches import count_periodic
 from exactfold.branches.periodic.sampled import _slopes
 from exactfold.errors import NotApplicableError, UsageError
-from exactfold.motion.periodic.rolling import Patch, RollingMotion, roll
+from exactfold.motion.periodic.patch import Patch
+from exactfold.motion.periodic.rolling import RollingMotion, roll
 from exactfold.motion.periodic.wrapping import Wrapping, shortening
 from exactfold.pattern import PeriodicPattern, random_cell, read_cell
 from exactfold.rigidity.equations.periodic import PeriodicProblem
