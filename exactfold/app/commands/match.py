@@ -126,7 +126,7 @@ class Asked(MatchOptions):
                 answer, ways = rolled.with_letters(letters)
         if self.as_json:
             document: PeriodicMatchDocument = {
-                "format": "exactfold periodic match",
+                "format": "exactfold periodic-match result",
                 "version": 1,
                 "name": name_of(self.file),
                 "letters": letters,

@@ -114,7 +114,7 @@ class Crossing:
     b: int
     vertices: tuple[int, ...]
 
-    def to_dict(self) -> CrossingDocument:
+    def to_dict(self) -> DirectionCrossingDocument:
         """The object in the JSON."""
         return {
             "direction": self.direction.to_dict(),
@@ -138,7 +138,7 @@ class ExactDirectionDocument(TypedDict):
     """The polynomial y(t)."""
 
 
-class CrossingDocument(TypedDict):
+class DirectionCrossingDocument(TypedDict):
     """A direction and a solution at which stars are flat."""
 
     direction: ExactDirectionDocument
@@ -165,7 +165,7 @@ class RollingBranchDocument(TypedDict):
 class DirectionsDocument(TypedDict):
     """The branches of a periodic sheet over all directions."""
 
-    format: Literal["exactfold periodic directions"]
+    format: Literal["exactfold directions result"]
     version: Literal[1]
     name: str | None
     """The file or the name of the cell."""
@@ -177,7 +177,7 @@ class DirectionsDocument(TypedDict):
     """The number V of vertices in the cell."""
     branches: list[RollingBranchDocument]
     """A branch for each pair of opposite sign vectors, sorted; empty if they are not known."""
-    crossings: list[CrossingDocument]
+    crossings: list[DirectionCrossingDocument]
     """All crossings for directions counter-clockwise; some of them if undecided."""
     permutation: list[Positive] | None
     """After a half turn, from just after 1,0: as which branch, from 1, each of them continues."""
@@ -239,7 +239,7 @@ class DirectionsCount:
         """The object printed by `exactfold count CELL --direction all --json`."""
         order, cycles = self.permutation, self.cycles
         return {
-            "format": "exactfold periodic directions",
+            "format": "exactfold directions result",
             "version": 1,
             "name": name,
             "status": str(self.status),

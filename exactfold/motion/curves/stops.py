@@ -17,7 +17,7 @@ from exactfold.exact.numbers import format_rational
 from exactfold.motion.curves.drive import not_a_fold
 from exactfold.motion.curves.events import STOP, Event
 from exactfold.motion.curves.zeros import zero_of
-from exactfold.pattern.panel_pattern import Edge
+from exactfold.pattern.crease_pattern import Edge
 
 _AT_ONCE: Final = 1e-9
 _WITHIN: Final = 1e-13

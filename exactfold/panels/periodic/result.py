@@ -133,7 +133,7 @@ class PeriodicMotionDocument(TypedDict):
 class PanelCellDocument(TypedDict):
     """The periodic motions of a tessellation of rigid panels."""
 
-    format: Literal["exactfold periodic panels"]
+    format: Literal["exactfold panel-cell result"]
     version: Literal[1]
     name: str | None
     """The file or the name of the cell."""
@@ -154,7 +154,7 @@ class PanelCellDocument(TypedDict):
 class PeriodicMatchDocument(TypedDict):
     """Whether a periodic sheet starts to fold with given letters."""
 
-    format: Literal["exactfold periodic match"]
+    format: Literal["exactfold periodic-match result"]
     version: Literal[1]
     name: str | None
     """The file or the name of the cell."""
@@ -220,7 +220,7 @@ class PanelCell(Ways[PeriodicMotion]):
     def to_dict(self, name: str | None = None) -> PanelCellDocument:
         """The object printed by `exactfold count CELL --json`."""
         return {
-            "format": "exactfold periodic panels",
+            "format": "exactfold panel-cell result",
             "version": 1,
             "name": name,
             "status": str(self.status),

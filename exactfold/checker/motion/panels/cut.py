@@ -12,7 +12,7 @@ triangles, and these overlap in sides only.
 from __future__ import annotations
 
 from ...core.reading import require
-from ...sheets.panels import PanelSheet, cross
+from ...sheets.panels import Edge, PanelSheet, cross
 
 Triangle = tuple[int, int, int]
 
@@ -57,3 +57,12 @@ def from_least(corners: tuple[int, ...]) -> tuple[int, ...]:
     """The corners of a panel in the same cyclic order, beginning with the smallest number."""
     first = corners.index(min(corners))
     return corners[first:] + corners[:first]
+
+
+def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
+    """For each edge, in each of its two directions, the panel to its left."""
+    return {
+        side: k
+        for k, panel in enumerate(sheet.panels)
+        for side in zip(panel, (*panel[1:], panel[0]), strict=True)
+    }

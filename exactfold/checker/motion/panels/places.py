@@ -19,6 +19,7 @@ from ...core.intervals import Interval
 from ...core.reading import require
 from ...sheets.panels import Edge, PanelSheet, pair
 from ..lengths import GRID
+from .cut import panels_of
 from .drive import DrivenModes, length
 from .series import BITS, DEGREE, ONE, Polynomial, Series, polynomial, scaled, thin, times
 from .times import Clock
@@ -222,15 +223,6 @@ class Places:
                     column = [p + q for p, q in zip(column, scaled(row[2], z), strict=True)]
                 columns.append([p >> _SHIFT for p in column])
         return columns, most
-
-
-def panels_of(sheet: PanelSheet) -> dict[Edge, int]:
-    """For each edge, in each of its two directions, the panel to its left."""
-    return {
-        side: k
-        for k, panel in enumerate(sheet.panels)
-        for side in zip(panel, (*panel[1:], panel[0]), strict=True)
-    }
 
 
 def _middle(sheet: PanelSheet) -> int:

@@ -15,7 +15,8 @@ from panel_sheets import miura
 
 from exactfold import checker
 from exactfold.checker.motion.panels.folding import Folding
-from exactfold.checker.motion.panels.plates import Outlines, Plates, Solid
+from exactfold.checker.motion.panels.outlines import Outlines, Solid
+from exactfold.checker.motion.panels.plates import Plates
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.motion import follow_panels, prove_panels
 from exactfold.motion.solid.plates import Plates as Ours
