@@ -35,7 +35,8 @@ from ..core.reading import (
     rounded,
 )
 from ..sheets.panels import read_panels
-from .zeros import Conditions, Zero
+from .conditions import Conditions
+from .zeros import Zero
 
 
 class ToleranceClaims(TypedDict):

@@ -10,7 +10,8 @@ from exactfold.certificates.entries import Document
 from exactfold.checker.core.reading import CertificateError, LimitError
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.checker.tolerance.certificate import TOLERANCE
-from exactfold.checker.tolerance.zeros import Conditions, Zero
+from exactfold.checker.tolerance.conditions import Conditions
+from exactfold.checker.tolerance.zeros import Zero
 from exactfold.design.tolerance.result import Tolerance
 from exactfold.errors import NotApplicableError
 from exactfold.exact.numbers import format_rational

@@ -13,7 +13,8 @@ from exactfold.branches import count_branches
 from exactfold.branches.counting.ways import count_ways
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.checker.tolerance import certificate
-from exactfold.checker.tolerance.zeros import Conditions, P, S, Zero
+from exactfold.checker.tolerance.conditions import Conditions, P, S
+from exactfold.checker.tolerance.zeros import Zero
 from exactfold.design.tolerance.certificate import tolerance_certificate
 from exactfold.design.tolerance.tolerance import tolerance_of_branches, tolerance_of_panels
 from exactfold.errors import NotApplicableError
@@ -145,7 +146,7 @@ def test_the_work_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     message = beyond("the products of the test", 4 * 12**3, 1000, "TOLERANCE_WORK")
     stopped(two(), message)
     monkeypatch.undo()
-    monkeypatch.setattr("exactfold.checker.tolerance.zeros.TOLERANCE_UNKNOWNS", 10)
+    monkeypatch.setattr("exactfold.checker.tolerance.conditions.TOLERANCE_UNKNOWNS", 10)
     stopped(two(), beyond("the unknowns of a zero", 12, 10, "TOLERANCE_UNKNOWNS"))
 
 
