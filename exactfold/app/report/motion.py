@@ -15,6 +15,7 @@ from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED
 from exactfold.app.report.branch import boundary_heights_text
 from exactfold.app.report.terminal import cut, facts_table, letters_text, status_text
+from exactfold.exact.numbers import outward
 from exactfold.motion.curves.events import (
     ANGLE,
     CHANGE,
@@ -153,10 +154,9 @@ def _enclosed(event: Event, *, passed: bool) -> str:
 
 
 def _between(event: Event) -> str:
-    """Bounds of the time of an event, with so many digits that they differ."""
-    low, high = event.time
-    digits = next((n for n in range(8, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 17)
-    return f"between the times {low:.{digits}g} and {high:.{digits}g}"
+    """Bounds of the time of an event."""
+    low, high = outward(*event.time)
+    return f"between the times {low} and {high}"
 
 
 def _proved(motion: Motion | PanelMotion | FamilyMotion | RollingMotion) -> RenderableType:

@@ -15,6 +15,7 @@ from exactfold.app.viewer.coding import CodedFrames, coded_frames, levelled
 from exactfold.app.viewer.families import Representative
 from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
+from exactfold.exact.numbers import outward
 from exactfold.motion.following import follow
 from exactfold.motion.proving import prove
 from exactfold.panels.modes.extension import FOREST, LINEAR
@@ -252,8 +253,8 @@ def _proof(motion: Motion) -> _Known:
     if proof.end_text and proof.clear_to_the_end:
         parts.append("no two faces touch before it, nor at it")
     if event is not None:
-        low, high = event.time
-        parts.append(f"its first contact is between the times {low:.8g} and {high:.8g}")
+        low, high = outward(*event.time)
+        parts.append(f"its first contact is between the times {low} and {high}")
     return _Known(True, True, f"{'; '.join(parts)}; the frames are floats close to it")
 
 
@@ -285,8 +286,8 @@ def _proved_contact(motion: PanelMotion) -> str:
         return f"its contacts are undecided: {clearance.reason}"
     if clearance.event is None:
         return "it is proved that no panels touch on the way"
-    low, high = clearance.event.time
-    return f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
+    low, high = outward(*clearance.event.time)
+    return f"its first contact is proved to be between the times {low} and {high}"
 
 
 def not_followed(why: str) -> Followed:

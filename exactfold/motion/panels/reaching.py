@@ -1,7 +1,8 @@
 """When fold angles of a motion of panels reach given sizes, with proved bounds.
 
-The size of every fold angle grows strictly until a fold is closed (docs/motion.md, Theorems 8 and
-9). So one time at which all are proved to be smaller shows that they are so all the time before.
+The size of every fold angle grows strictly until a fold is closed (docs/motion.md, Theorem 8;
+docs/motion.md, Theorem 9). So one time at which all are proved to be smaller shows that they are so
+all the time before.
 """
 
 from __future__ import annotations

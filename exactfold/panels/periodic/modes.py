@@ -36,7 +36,7 @@ def count_panel_cell(cell: object, *, limit: float | None = None) -> PanelCell:
     K_v(w) = 0 (docs/panels.md, Motions at the flat sheet). The solutions are found for all
     directions n together, by splitting linear spaces exactly. On each, the gradient grows by B l
     along a lattice vector l: B = 0, and the motion is planar, or B = b n n^T, and the sheet rolls
-    up across n (docs/tessellations.md, Panels). A part of one dimension truly folds if all vertices
+    up across n (docs/tessellations.md, 6). A part of one dimension truly folds if all vertices
     close for tan(fold angle / 2) = T w length and every T, with the same angles in each cell.
 
     UNDECIDED, with the reason, if the solutions are not known; whether they truly fold has a

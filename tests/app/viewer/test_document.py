@@ -27,6 +27,7 @@ from exactfold.branches import count_branches, count_ways, find_branch
 from exactfold.branches.counting.pools import process_pool
 from exactfold.design import match_panels
 from exactfold.errors import UsageError
+from exactfold.exact.numbers import outward
 from exactfold.motion import follow, follow_panels, panel_ways, prove, prove_contacts
 from exactfold.pattern.families import single_vertex
 from exactfold.pattern.loading import open_sheet
@@ -81,7 +82,7 @@ def test_motions_are_proved_where_that_is_asked_for():
     [way] = view_document("two-vertex", branches=["+-"], frames=3, proving=True)["ways"]
     event = prove(follow(find_branch("two-vertex", "+-"))).contact.event
     assert way["motion"]["proved"]
-    assert "between the times {:.8g} and {:.8g}".format(*event.time) in way["motion"]["said"]
+    assert "between the times {} and {}".format(*outward(*event.time)) in way["motion"]["said"]
 
 
 @pytest.mark.slow
@@ -195,8 +196,8 @@ def test_it_says_what_is_proved_of_a_motion_of_panels():
     assert (ways[0]["motion"]["proved"], ways[0]["motion"]["exists"]) == (False, True)
     way = ways[2]
     event = prove_contacts(follow_panels(count_ways("zigzags"), way=3)).event
-    low, high = event.time
-    times = f"its first contact is proved to be between the times {low:.12g} and {high:.12g}"
+    low, high = outward(*event.time)
+    times = f"its first contact is proved to be between the times {low} and {high}"
     assert way["motion"]["said"] == exact + times
 
 

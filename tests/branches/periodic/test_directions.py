@@ -68,8 +68,8 @@ def permuted(pattern: PeriodicPattern) -> dict[str, str]:
         pytest.param(read_cell("resch-cell"), 151, marks=pytest.mark.slow),
         pytest.param(random_cell(3, 4, 64), 151, marks=pytest.mark.slow),
         pytest.param(random_cell(3, 0, 64), 801, marks=pytest.mark.slow),
-        pytest.param(random_cell(4, 1, 64, flips=4), 1601, marks=pytest.mark.slow),
-        pytest.param(random_cell(4, 4, 64), 1601, marks=pytest.mark.slow),
+        pytest.param(random_cell(4, 1, 64, flips=4), 1601, marks=pytest.mark.survey),
+        pytest.param(random_cell(4, 4, 64), 1601, marks=pytest.mark.survey),
     ],
 )
 def test_branches_followed_in_floats_come_back_as_proved(cell: PeriodicPattern, steps: int) -> None:
