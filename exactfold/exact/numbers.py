@@ -114,24 +114,6 @@ def approx_number(text: str) -> float:
         return inf if value > 0 else -inf
 
 
-def outward(low: float, high: float) -> tuple[str, str]:
-    """Two bounds in decimals, rounded outwards: eight digits, or so many that they differ.
-
-    >>> outward(2.2142974355, 2.2142974365)
-    ('2.214297435', '2.214297437')
-    """
-
-    def text(value: float, digits: int, rounding: str) -> str:
-        context = Context(prec=digits, rounding=rounding)
-        return f"{context.create_decimal_from_float(value).normalize():f}"
-
-    for digits in range(8, 17):
-        pair = text(low, digits, ROUND_FLOOR), text(high, digits, ROUND_CEILING)
-        if text(low, digits, ROUND_HALF_EVEN) != text(high, digits, ROUND_HALF_EVEN):
-            return pair
-    return text(low, 17, ROUND_FLOOR), text(high, 17, ROUND_CEILING)
-
-
 def shown(value: object) -> str:
     """`value` as it appears in an error message: its repr, cut to 40 characters.
 
@@ -241,6 +223,18 @@ def decimal_below(value: Fraction, digits: int) -> str:
     ('0.6', '-0.7')
     """
     return _decimal(value, Context(digits, ROUND_FLOOR))
+
+
+def outward(low: float, high: float) -> tuple[str, str]:
+    """Two bounds in decimals, rounded outwards: eight digits, or so many that they differ.
+
+    >>> outward(2.2142974355, 2.2142974365)
+    ('2.214297435', '2.214297437')
+    >>> outward(2 / 3, 0.75)
+    ('0.66666666', '0.75')
+    """
+    digits = next((n for n in range(8, 17) if f"{low:.{n}g}" != f"{high:.{n}g}"), 16)
+    return decimal_below(Fraction(low), digits), decimal_above(Fraction(high), digits)
 
 
 def decimal_near(value: Fraction, digits: int) -> str:
