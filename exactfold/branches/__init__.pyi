@@ -37,7 +37,7 @@ from exactfold.branches.counting.ways import count_ways as count_ways
 from exactfold.branches.periodic.certificate import periodic_certificate as periodic_certificate
 from exactfold.branches.periodic.counting import count_periodic as count_periodic
 from exactfold.branches.periodic.directions import count_directions as count_directions
-from exactfold.branches.periodic.directions_result import Crossing as Crossing
+from exactfold.branches.periodic.directions_result import BranchCrossing as BranchCrossing
 from exactfold.branches.periodic.directions_result import DirectionsCount as DirectionsCount
 from exactfold.branches.periodic.directions_result import ExactDirection as ExactDirection
 from exactfold.branches.periodic.directions_result import RollingBranch as RollingBranch

@@ -16,7 +16,7 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.counting import count_periodic
 from exactfold.branches.periodic.crossings import Crossings, OpenVertexError, Place, RealPlace
 from exactfold.branches.periodic.directions_result import (
-    Crossing,
+    BranchCrossing,
     DirectionsCount,
     ExactDirection,
     RollingBranch,
@@ -180,12 +180,12 @@ def _place(event: _Event) -> tuple[bool, Fraction]:
     return (bounds is None, Fraction(0) if bounds is None else (bounds[0] + bounds[1]) / 2)
 
 
-def _crossing(problem: AllDirections, base: PeriodicCount, event: _Event) -> Crossing:
+def _crossing(problem: AllDirections, base: PeriodicCount, event: _Event) -> BranchCrossing:
     shown = Shown(PeriodicProblem(problem.pattern, problem.parts, base.direction))
     branch = shown.branch(event.signs, 1, "F" * len(problem.sheet.edges))
     exact, angle = _direction(problem, event)
     vertices = tuple(problem.labels[v] for v in event.place.flat)
-    return Crossing(exact, angle, branch.vertex_signs, branch.b, vertices)
+    return BranchCrossing(exact, angle, branch.vertex_signs, branch.b, vertices)
 
 
 def _direction(problem: AllDirections, event: _Event) -> tuple[ExactDirection, float]:

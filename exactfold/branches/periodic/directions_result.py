@@ -100,7 +100,7 @@ class ExactDirection:
 
 
 @dataclass(frozen=True)
-class Crossing:
+class BranchCrossing:
     """A direction and a solution at which stars are flat: the 2^(number of them) branches there.
 
     `vertices` are those that are flat at this direction only, and have other signs after it than
@@ -114,7 +114,7 @@ class Crossing:
     b: int
     vertices: tuple[int, ...]
 
-    def to_dict(self) -> DirectionCrossingDocument:
+    def to_dict(self) -> BranchCrossingDocument:
         """The object in the JSON."""
         return {
             "direction": self.direction.to_dict(),
@@ -138,7 +138,7 @@ class ExactDirectionDocument(TypedDict):
     """The polynomial y(t)."""
 
 
-class DirectionCrossingDocument(TypedDict):
+class BranchCrossingDocument(TypedDict):
     """A direction and a solution at which stars are flat."""
 
     direction: ExactDirectionDocument
@@ -177,7 +177,7 @@ class DirectionsDocument(TypedDict):
     """The number V of vertices in the cell."""
     branches: list[RollingBranchDocument]
     """A branch for each pair of opposite sign vectors, sorted; empty if they are not known."""
-    crossings: list[DirectionCrossingDocument]
+    crossings: list[BranchCrossingDocument]
     """All crossings for directions counter-clockwise; some of them if undecided."""
     permutation: list[Positive] | None
     """After a half turn, from just after 1,0: as which branch, from 1, each of them continues."""
@@ -202,7 +202,7 @@ class DirectionsCount:
     status: Verdict
     reason: str
     branches: tuple[RollingBranch, ...]
-    crossings: tuple[Crossing, ...]
+    crossings: tuple[BranchCrossing, ...]
     permutation: tuple[int, ...] | None
     seconds: float = field(default=0.0, compare=False)
 
