@@ -12,6 +12,8 @@ import pytest
 from compact_files import Lines, bodies, chained, listed_exactly, put, raw
 
 from exactfold import checker
+from exactfold.branches import branch_certificate, find_branch
+from exactfold.pattern.crease_pattern import CreasePattern
 
 ROOT = Path(__file__).parent.parent.parent
 SOURCES = ROOT / "proofs" / "formal" / "verify"
@@ -192,20 +194,37 @@ def test_the_gauge_saddle_is_one_of_four_vertices_with_a_positive_saddle(
 ) -> None:
     rim = json.loads((CERTIFICATES / "branch-rim.json").read_text(encoding="utf-8"))
     rim["claims"]["gauge"] = "saddle"
-    branch = json.loads(RANDOM.read_text(encoding="utf-8"))
-    branch["evidence"]["heights"] = [str(-int(h)) for h in branch["evidence"]["heights"]]
-    claims = branch["claims"]
-    claims["vertex_signs"] = [-s for s in claims["vertex_signs"]]
-    claims["assignment"] = claims["assignment"].translate(str.maketrans("MV", "VM"))
-    for forged, said in (
-        (rim, "needs four boundary vertices"),
-        (branch, "saddle is not positive"),
-    ):
-        path = tmp_path / "forged.json"
-        path.write_text(json.dumps(forged), encoding="utf-8")
+    for given in (json.loads(RANDOM.read_text(encoding="utf-8")), apex_first()):
+        path = tmp_path / "branch.json"
+        path.write_text(json.dumps(given), encoding="utf-8")
+        assert run(verifier, path)[0] == 0
+        path.write_text(json.dumps(negated(given)), encoding="utf-8")
         code, text = run(verifier, path)
-        assert (code, said in text) == (1, True)
+        assert (code, "saddle is not positive" in text) == (1, True)
         assert valid(path) is None
+    path.write_text(json.dumps(rim), encoding="utf-8")
+    code, text = run(verifier, path)
+    assert (code, "needs four boundary vertices" in text) == (1, True)
+    assert valid(path) is None
+
+
+def apex_first() -> dict[str, Any]:
+    """A branch of a sheet whose first vertex is opposite to three boundary vertices in line."""
+    points = [(1, 3), (0, 0), (1, 0), (2, 0), (1, 1)]
+    sheet = CreasePattern(points, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)])
+    return branch_certificate(find_branch(sheet, "+"))
+
+
+def negated(branch: dict[str, Any]) -> dict[str, Any]:
+    """The same certificate, seen from the other side: heights, signs and letters."""
+    claims, evidence = branch["claims"], branch["evidence"]
+    heights = [str(-int(h)) for h in evidence["heights"]]
+    letters = claims["assignment"].translate(str.maketrans("MV", "VM"))
+    signs = [-s for s in claims["vertex_signs"]]
+    return branch | {
+        "claims": claims | {"vertex_signs": signs, "assignment": letters},
+        "evidence": evidence | {"heights": heights},
+    }
 
 
 def check_mutations(verifier: Path, path: Path, count: int, seed: int) -> None:

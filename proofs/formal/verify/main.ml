@@ -175,6 +175,19 @@ let all_branches header blocks claims =
 
 (* --- one branch --- *)
 
+(* Whether the boundary saddle of heights is positive: their sum with the weights of the affine dependency of the
+   four boundary vertices. The vertex with the smallest number has a positive weight, or, if the others are in
+   line, both ends of this line. The order of the four does not matter. *)
+let positive_saddle sheet (a, b, c, d) h =
+  let turn x y z =
+    let (px, py), (qx, qy), (rx, ry) = sheet.points.(x), sheet.points.(y), sheet.points.(z) in
+    Z.sub (Z.mul (Z.sub qx px) (Z.sub ry py)) (Z.mul (Z.sub qy py) (Z.sub rx px)) in
+  let weights = [ (a, turn b c d); (b, Z.neg (turn a c d)); (c, turn a b d); (d, Z.neg (turn a b c)) ] in
+  let first = Z.sign (List.assoc (min (min a b) (min c d)) weights) in
+  let most = List.fold_left (fun n (_, w) -> n + Z.sign w) 0 weights in
+  let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
+  Z.sign sum * (if first <> 0 then first else most) > 0
+
 let one_branch data =
   let claims = entry "claims" data and evidence = entry "evidence" data in
   only "format version pattern claims evidence provenance" data;
@@ -196,8 +209,9 @@ let one_branch data =
     refuse "the numbers of heights, signs and vertices differ";
   let gauge = string "gauge" (entry "gauge" claims) in
   if gauge = "saddle" then begin
-    if List.length d.border <> 4 then invalid "the gauge \"saddle\" needs four boundary vertices";
-    if Z.leq (Proposing.saddle sheet d h) Z.zero then invalid "the boundary saddle is not positive"
+    match d.border with
+    | [ w; x; y; z ] -> if not (positive_saddle sheet (w, x, y, z) h) then invalid "the boundary saddle is not positive"
+    | _ -> invalid "the gauge \"saddle\" needs four boundary vertices"
   end
   else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim";
   let claimed = Hashtbl.create 64 in

@@ -221,12 +221,3 @@ let clear rough h bits aim =
     let x = at i in
     let bend = a *. (at j -. x) +. b *. (at l -. x) +. c *. (at m -. x) in
     bend *. bend > 4. *. ldexp slack (-aim)) rough
-
-(* What the boundary saddle of heights is multiplied with, and its sign: the affine dependency of the four
-   boundary vertices, in which the last of the pinned order has the weight 1. *)
-let saddle sheet (d : V.drawing) h = match d.border with
-  | [ a; b; c; last ] ->
-    let turn x y z = let at v = sheet.points.(v) in zturn (minus (at y) (at x)) (minus (at z) (at x)) in
-    let weights = [ (a, Z.neg (turn last b c)); (b, Z.neg (turn a last c)); (c, Z.neg (turn a b last)); (last, turn a b c) ] in
-    Z.mul (turn a b c) (List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights)
-  | _ -> Z.zero
