@@ -10,6 +10,7 @@ import pytest
 from exactfold import PROVED, checker
 from exactfold.branches import AlgebraicLine, HeightSpace, count_periodic, periodic_certificate
 from exactfold.branches.periodic import counting
+from exactfold.branches.periodic.lines import QuadraticLine
 from exactfold.branches.periodic.spaces import Spaces
 from exactfold.checker.sheets.cell import CellForms
 from exactfold.checker.sheets.cell import read_cell as read_checked
@@ -157,7 +158,16 @@ def test_the_pleats_of_a_square_twist_are_over_the_field_of_root_five() -> None:
         assert (b * b - 4 * a * c) % 5 == 0
         square = Fraction(b * b - 4 * a * c, 5)
         assert int(square**0.5) ** 2 == square
-    with pytest.raises(NotApplicableError, match="Groebner"):
+    claims = checker.check(periodic_certificate(result))
+    assert [line["radicand"] for line in claims["lines"]] == [5, 5]
+    assert claims["pleats"] == []
+
+
+def test_no_certificate_states_a_pleat_in_a_larger_field(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(QuadraticLine, "of", lambda ray: None)
+    result = count_periodic("square-twist-cell", (1, 2))
+    assert result.status is PROVED
+    with pytest.raises(NotApplicableError, match="in no quadratic field"):
         periodic_certificate(result)
 
 
