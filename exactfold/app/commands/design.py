@@ -13,12 +13,16 @@ from exactfold.app.shell.shell import EXIT, Bar, name_of, sheet_written, wrote
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.app.verbs.chosen import asked_letters
 from exactfold.branches.counting.find import find_branch
+from exactfold.branches.counting.ways import decompose_opened
 from exactfold.branches.values.branch import Branch
 from exactfold.design.moving.order import designed
 from exactfold.design.moving.result import Designed
 from exactfold.design.refutations.asked import by_fold
+from exactfold.errors import UsageError
+from exactfold.motion.panels.listing import panel_ways, require_listed
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import Opened
+from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.writing.fold_writing import (
     checked_target,
     document_text,
@@ -42,7 +46,7 @@ class Asked(DesignOptions):
         fixed = [] if self.fixed is None else indices("--fixed", self.fixed)
         with Bar("reading") as bar:
             opened = read_any(self.file, self.reading, verbose=self.verbose)
-            letters = self._letters(opened)
+            letters = self._letters(opened, bar)
             found = designed(
                 opened.sheet,
                 letters,
@@ -68,9 +72,21 @@ class Asked(DesignOptions):
                 wrote(self.output, sheet_written(found.pattern))
         return EXIT[found.status]
 
-    def _letters(self, opened: Opened) -> dict[tuple[int, int], str] | None:
-        if self.letters is None:
+    def _letters(self, opened: Opened, bar: Bar) -> dict[tuple[int, int], str] | None:
+        """The letters that are asked for: of panels also those of a way."""
+        of_panels = isinstance(opened.sheet, PanelPattern)
+        if self.letters is None and (self.way is None or not of_panels):
+            if self.maximise is None:
+                raise UsageError("give --letters that are wanted, or --maximise, or both")
             return None
+        if self.letters is None:
+            known = decompose_opened(opened, progress=bar, clock=Clock(self.limit)).known
+            ways = panel_ways(known)
+            require_listed(ways, self.way or 0)
+            return by_fold(
+                opened.sheet.folds,
+                dict.fromkeys(opened.sheet.folds, "F") | dict(ways[(self.way or 0) - 1].letters),
+            )
         asked = choice_of(self, opened).letters
         return by_fold(opened.sheet.folds, asked_letters(opened, asked))
 

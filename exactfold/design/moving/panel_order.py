@@ -15,6 +15,7 @@ from exactfold._support.plurals import counted
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.moving.descent import Attempt, descended
+from exactfold.design.moving.panel_margin import Climb, proved_margin
 from exactfold.design.moving.places import Places, symmetries_of
 from exactfold.design.moving.rational_sheet import nearest_sheet, rational_sheets
 from exactfold.design.moving.result import Designed
@@ -22,6 +23,8 @@ from exactfold.design.moving.slopes import Equations, Slopes
 from exactfold.design.panels.match import PanelMatch, match_panels
 from exactfold.design.refutations.asked import by_fold
 from exactfold.errors import NotCountedError, UsageError
+from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.opened import panels
 from exactfold.pattern.panel_pattern import Edge, EnclosedPattern, PanelPattern
 
 Border: TypeAlias = Literal["along", "free"]
@@ -49,11 +52,14 @@ def designed_panels(
     fixed: Collection[int],
     symmetric: bool,
     border: Border,
+    with_margin: bool,
     clock: Clock,
     progress: Progress | None,
 ) -> Designed:
-    """The sheet of panels that `designed` finds for letters; see there."""
-    return _PanelSearch(pattern, letters, within, fixed, symmetric, border, clock, progress).found()
+    """The sheet of panels that `designed` finds for letters, and then for the margin of torques."""
+    search = _PanelSearch(pattern, letters, within, fixed, symmetric, border, clock, progress)
+    found = search.found()
+    return search.with_margin(found) if with_margin and found.status is PROVED else found
 
 
 class _PanelSearch:
@@ -141,6 +147,43 @@ class _PanelSearch:
             return self._result(self.pattern, UNDECIDED, f"no sheet was tried ({self._stopped})")
         return self._closest(*best)
 
+    def with_margin(self, first: Designed) -> Designed:
+        """The sheet with the largest margin that is found, from one with the letters on."""
+        best = first.pattern
+        if isinstance(best, CreasePattern):
+            best = panels(best)
+        value = before = proved_margin(best, self.letters, self.clock)
+        try:
+            if (solved := self._solved()) is not None:
+                climb = Climb(*solved, self.letters, _DIGITS, self.clock, self.progress)
+                for sheet, margin in climb.sheets(before):
+                    best, value = sheet, margin
+                    self.steps += 1
+        except KeyboardInterrupt:
+            self.interrupted = True
+        reason = "the margin of torques is proved to be larger than before"
+        if value <= before:
+            reason = "no sheet with a larger margin of torques was found"
+            if not before:
+                reason += ", and none is proved of the given one: not all its ways are known, or "
+                reason += "the letters are not those of an isolated way"
+        if self.interrupted:
+            reason += ", and the search was interrupted"
+        status = PROVED if value > before else UNDECIDED
+        found = self._result(best, status, reason)
+        return replace(found, goal="margin", before=before, after=value)
+
+    def _solved(self) -> tuple[Equations, FloatArray] | None:
+        """Equations, and a solution near which there are exact sheets with the letters."""
+        for loops in self._plans():
+            equations = Equations(self.slopes, self.within, loops)
+            for last in self._attempts(equations):
+                if last.off <= _REACHED:
+                    for sheet in rational_sheets(equations, last.x, _DIGITS):
+                        if self._match(sheet).truly is PROVED:
+                            return equations, last.x
+        return None
+
     def _plans(self) -> Iterator[tuple[int, ...]]:
         """Which vertices have constant gains: those on loops first, and then none."""
         around = self.slopes.around
@@ -165,14 +208,15 @@ class _PanelSearch:
         source = np.random.default_rng(0)
         few = equations.moves.shape[1]
         for number in range(_STARTS):
-            least, places = np.ones(len(self.slopes.folds)), np.zeros(few)
+            least: FloatArray = np.ones(len(self.slopes.folds))
+            places: FloatArray = np.zeros(few)
             if number:
-                least = source.uniform(1.0, 3.0, len(least))
-                places = source.uniform(-_AWAY, _AWAY, few) * equations.within
-            first = equations.first(places, least)
-            if first is None or self.clock.passed:
+                least = np.asarray(source.uniform(1.0, 3.0, len(least)))
+                places = np.asarray(source.uniform(-_AWAY, _AWAY, few)) * equations.within
+            slopes = equations.first(places, least)
+            if slopes is None or self.clock.passed:
                 return
-            start = np.concatenate([places, first])
+            start: FloatArray = np.concatenate([places, slopes])
             last: Attempt | None = None
             try:
                 for last in descended(
@@ -194,7 +238,9 @@ class _PanelSearch:
         return match_panels(sheet, self.letters, clock=self.clock)
 
     def _closest(self, equations: Equations, last: Attempt) -> Designed:
-        sheet = nearest_sheet(equations, last.x, _WRITTEN)
+        shares = (1.0, 0.75, 0.5, 0.25)
+        tried = (nearest_sheet(equations, share * last.x, _WRITTEN) for share in shares)
+        sheet = next((one for one in tried if one is not None), None)
         if last.off <= _REACHED:
             why = "floats reach them, but no exact sheet was found there"
         else:

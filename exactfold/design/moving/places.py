@@ -23,7 +23,7 @@ Column = dict[int, tuple[Fraction, Fraction]]
 """How much each vertex moves."""
 
 ONE: Matrix = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))
-_STRAIGHT = 1e-9
+_STRAIGHT = 1e-3
 """A vertex of the border is a corner if the sine of its turn is larger."""
 _GRID = 10**6
 """Places are rounded to this share of the width."""
@@ -85,9 +85,7 @@ class Places:
         self.start = self._rounded(floats)
         self.columns = self._columns()
 
-    def _slides(
-        self, floats: FloatArray, fixed: Collection[int]
-    ) -> dict[int, tuple[int, int]]:
+    def _slides(self, floats: FloatArray, fixed: Collection[int]) -> dict[int, tuple[int, int]]:
         """For each vertex of the border that is no corner, the corners at the ends of its side."""
         found: dict[int, tuple[int, int]] = {}
         for cycle in border_cycles(self.pattern):

@@ -7,21 +7,31 @@ as it has to be.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 import numpy as np
-from scipy.linalg import qr
 
 from exactfold._support.arrays import FloatArray
 from exactfold.design.moving.places import Column
 from exactfold.design.moving.slopes import Equations
+from exactfold.design.moving.vectors import (
+    Row,
+    Vector,
+    area,
+    both,
+    combined,
+    cross,
+    difference,
+    dot,
+    minus,
+    mixed,
+    solution,
+)
 from exactfold.errors import FoldError, PatternError
-from exactfold.exact.linalg import from_fmpq, nullspace, to_flint
+from exactfold.exact.linalg import nullspace
 from exactfold.pattern.panel_pattern import PanelPattern
 
-Vector = tuple[Fraction, Fraction]
 _SMALL = 1e-7
 """Singular values below this share of the largest count as 0."""
 _OFF = 0.05
@@ -63,9 +73,7 @@ def _rounded(value: float, digits: int) -> Fraction:
     return Fraction(round(value * 10**digits), 10**digits)
 
 
-def _as_sheet(
-    equations: Equations, x: FloatArray, points: Sequence[Vector]
-) -> PanelPattern | None:
+def _as_sheet(equations: Equations, x: FloatArray, points: Sequence[Vector]) -> PanelPattern | None:
     """The sheet with these vertices; None if its panels are not those of the given one, or if a
     vertex is far from where floats propose it, or out of its box.
     """
@@ -83,14 +91,6 @@ def _as_sheet(
     except (FoldError, PatternError):
         return None
     return sheet if sheet.faces == given.faces else None
-
-
-@dataclass(frozen=True)
-class _Row:
-    """A linear equation: sum of coefficients times unknowns = right."""
-
-    coefficients: Mapping[int, Fraction]
-    right: Fraction
 
 
 class _Making:
@@ -131,7 +131,7 @@ class _Making:
             return None
         late = [k for k in range(len(self.p)) if k not in early]
         rows = [self._place_row(e, slopes, points, late) for e in after]
-        solved = _solved(rows, {k: shares[k] for k in late})
+        solved = solution(rows, {k: shares[k] for k in late})
         if solved is None:
             return None
         final = [solved.get(k, shares[k]) for k in range(len(shares))]
@@ -140,7 +140,7 @@ class _Making:
             return None
         return _as_sheet(self.equations, np.concatenate([self.p, self.q]), points)
 
-    # --- which places are rounded before the slopes are known --------------------------------------
+    # --- which places are rounded before the slopes are known ------------------------------------
 
     def _placed_first(self) -> tuple[set[int], list[int], list[int]] | None:
         """Columns of places that are rounded first, the folds that these leave to the slopes, and
@@ -177,13 +177,13 @@ class _Making:
         """Whether a column moves vertices of the border."""
         return any(v in self.places.slides for v in self.places.columns[k])
 
-    # --- slopes -------------------------------------------------------------------------------------
+    # --- slopes ----------------------------------------------------------------------------------
 
     def _slopes(self, points: Sequence[Vector], before: Sequence[int]) -> list[Vector] | None:
         columns, shares = self._basis(points, before)
         if columns is None:
             return None
-        slopes = _combined(self.slopes.number, columns, shares)
+        slopes = combined(self.slopes.number, columns, shares)
         held: set[int] = set()
         if self.equations.loops:
             if before:
@@ -197,9 +197,7 @@ class _Making:
         if not rest:
             return slopes
         usable = [
-            column
-            for column in self._movable(points, before)
-            if not held.intersection(column)
+            column for column in self._movable(points, before) if not held.intersection(column)
         ]
         return self._with_areas(slopes, rest, usable)
 
@@ -227,8 +225,8 @@ class _Making:
         rows = []
         for e in folds:
             fold = self.slopes.folds[e]
-            along = _minus(points[fold.end], points[fold.start])
-            row = [_dot(along, _jump(column, fold.left, fold.right)) for column in columns]
+            along = minus(points[fold.end], points[fold.start])
+            row = [dot(along, difference(column, fold.left, fold.right)) for column in columns]
             if any(row):
                 rows.append(row)
         if not rows:
@@ -290,10 +288,10 @@ class _Making:
             around = self.slopes.around[v]
             k = around.index(f)
             a, b, far = (slopes[around[(k + step) % 4]] for step in (1, 3, 2))
-            d = _minus(b, a)
-            if not _dot(d, d):
+            d = minus(b, a)
+            if not dot(d, d):
                 return None
-            twice = 2 * _dot(_minus(far, a), d) / _dot(d, d) - 1
+            twice = 2 * dot(minus(far, a), d) / dot(d, d) - 1
             slopes[f] = far[0] - twice * d[0], far[1] - twice * d[1]
             for one, image in maps:
                 x, y = one.applied(slopes[f])
@@ -316,7 +314,7 @@ class _Making:
         """Slopes whose polygons round the vertices have no area, by some of the columns."""
         around = [self.slopes.around[v] for v in vertices]
         gradient = np.array(
-            [[float(_mixed(panels, slopes, column)) for column in columns] for panels in around]
+            [[float(mixed(panels, slopes, column)) for column in columns] for panels in around]
         ).reshape(len(vertices), len(columns))
         touching = [
             {k for k, panels in enumerate(around) if column.keys() & set(panels)}
@@ -330,7 +328,7 @@ class _Making:
             chosen: list[int] = []
             for c in np.argsort(-weights):
                 if size[c] > 1e-9 and all(
-                    not _both(around[k], columns[c], columns[d])
+                    not both(around[k], columns[c], columns[d])
                     for d in [*chosen, c]
                     for k in touching[c] & touching[d]
                 ):
@@ -343,9 +341,9 @@ class _Making:
             return None
         rows = []
         for panels in around:
-            coefficients = {c: _mixed(panels, slopes, columns[c]) for c in best[1]}
-            rows.append(_Row({c: a for c, a in coefficients.items() if a}, -_area(panels, slopes)))
-        solved = _solved(rows, dict.fromkeys(best[1], Fraction(0)))
+            coefficients = {c: mixed(panels, slopes, columns[c]) for c in best[1]}
+            rows.append(Row({c: a for c, a in coefficients.items() if a}, -area(panels, slopes)))
+        solved = solution(rows, dict.fromkeys(best[1], Fraction(0)))
         if solved is None:
             return None
         slopes = list(slopes)
@@ -354,108 +352,31 @@ class _Making:
                 slopes[f] = slopes[f][0] + share * x, slopes[f][1] + share * y
         return slopes
 
-    # --- places -------------------------------------------------------------------------------------
+    # --- places ----------------------------------------------------------------------------------
 
     def _place_row(
         self, e: int, slopes: Sequence[Vector], points: Sequence[Vector], late: Sequence[int]
-    ) -> _Row:
+    ) -> Row:
         """The equation of a fold in the places that are left; `points` has 0 for these."""
         fold = self.slopes.folds[e]
-        jump = _minus(slopes[fold.left], slopes[fold.right])
-        right = -_dot(jump, _minus(points[fold.end], points[fold.start]))
+        jump = minus(slopes[fold.left], slopes[fold.right])
+        right = -dot(jump, minus(points[fold.end], points[fold.start]))
         coefficients = {}
         for k in late:
-            value = _dot(jump, _jump(self.places.columns[k], fold.end, fold.start))
+            value = dot(jump, difference(self.places.columns[k], fold.end, fold.start))
             if value:
                 coefficients[k] = value
-        return _Row(coefficients, right)
+        return Row(coefficients, right)
 
     def _holds(self, points: Sequence[Vector], slopes: Sequence[Vector]) -> bool:
         """Whether all equations hold exactly, and all letters are as wanted."""
         for fold in self.slopes.folds:
-            jump = _minus(slopes[fold.left], slopes[fold.right])
-            x, y = _minus(points[fold.end], points[fold.start])
-            if _dot(jump, (x, y)):
+            jump = minus(slopes[fold.left], slopes[fold.right])
+            x, y = minus(points[fold.end], points[fold.start])
+            if dot(jump, (x, y)):
                 return False
-            if fold.sign and fold.sign * _cross((x, y), jump) <= 0:
+            if fold.sign and fold.sign * cross((x, y), jump) <= 0:
                 return False
         return not any(
-            _area(panels, slopes) for panels in self.slopes.around.values() if len(panels) > 2
+            area(panels, slopes) for panels in self.slopes.around.values() if len(panels) > 2
         )
-
-
-def _solved(rows: Sequence[_Row], near: Mapping[int, Fraction]) -> dict[int, Fraction] | None:
-    """An exact solution: unknowns that are not needed keep the value that is given."""
-    if not rows:
-        return dict(near)
-    names = list(near)
-    matrix = np.array([[float(row.coefficients.get(k, 0)) for k in names] for row in rows])
-    scale = np.abs(matrix).max(axis=1, keepdims=True)
-    if not scale.all() or len(names) < len(rows):
-        return None
-    _, _, pivots = qr(matrix / scale, pivoting=True, mode="economic")
-    used = [names[k] for k in pivots[: len(rows)]]
-    kept = {k: value for k, value in near.items() if k not in set(used)}
-    left = to_flint([[row.coefficients.get(k, Fraction(0)) for k in used] for row in rows])
-    right = []
-    for row in rows:
-        known = sum((a * kept[k] for k, a in row.coefficients.items() if k in kept), Fraction(0))
-        right.append([row.right - known])
-    try:
-        found = left.solve(to_flint(right))
-    except ZeroDivisionError:
-        return None
-    return kept | {k: from_fmpq(found[i, 0]) for i, k in enumerate(used)}
-
-
-def _combined(number: int, columns: Sequence[Column], shares: Sequence[Fraction]) -> list[Vector]:
-    total = [(Fraction(0), Fraction(0))] * number
-    for column, share in zip(columns, shares, strict=True):
-        for f, (x, y) in column.items():
-            total[f] = total[f][0] + share * x, total[f][1] + share * y
-    return total
-
-
-_NO = (Fraction(0), Fraction(0))
-
-
-def _jump(column: Column, left: int, right: int) -> Vector:
-    return _minus(column.get(left, _NO), column.get(right, _NO))
-
-
-def _minus(a: Vector, b: Vector) -> Vector:
-    return a[0] - b[0], a[1] - b[1]
-
-
-def _dot(a: Vector, b: Vector) -> Fraction:
-    return a[0] * b[0] + a[1] * b[1]
-
-
-def _cross(a: Vector, b: Vector) -> Fraction:
-    return a[0] * b[1] - a[1] * b[0]
-
-
-def _area(panels: Sequence[int], slopes: Sequence[Vector]) -> Fraction:
-    """Twice the area of the polygon of slopes round a vertex."""
-    pairs = zip(panels, [*panels[1:], panels[0]], strict=True)
-    return sum((_cross(slopes[f], slopes[h]) for f, h in pairs), Fraction(0))
-
-
-def _mixed(panels: Sequence[int], slopes: Sequence[Vector], column: Column) -> Fraction:
-    """The derivative of that area along a column."""
-    total = Fraction(0)
-    for k, f in enumerate(panels):
-        if f in column:
-            after, before = slopes[panels[(k + 1) % len(panels)]], slopes[panels[k - 1]]
-            total += _cross(column[f], _minus(after, before))
-    return total
-
-
-def _both(panels: Sequence[int], one: Column, two: Column) -> bool:
-    """Whether the area has a term in both columns together."""
-    total = Fraction(0)
-    for k, f in enumerate(panels):
-        if f in one:
-            after, before = panels[(k + 1) % len(panels)], panels[k - 1]
-            total += _cross(one[f], _minus(two.get(after, _NO), two.get(before, _NO)))
-    return bool(total)

@@ -130,8 +130,8 @@ class Slopes:
 class Equations:
     """Residuals and their derivatives, in floats, for p (shares of places) and q (of slopes).
 
-    Lengths are in units of `Places.unit`. `loops` are vertices with four panels around them whose gains
-    are to be constant.
+    Lengths are in units of `Places.unit`. `loops` are vertices with four panels around them whose
+    gains are to be constant.
     """
 
     def __init__(self, slopes: Slopes, within: float, loops: tuple[int, ...] = ()) -> None:
@@ -174,7 +174,7 @@ class Equations:
         kept = np.abs(self.areas) > 1e-6 * size
         self.corners, self.areas = self.corners[kept], self.areas[kept]
 
-    # --- from shares to places and slopes ---------------------------------------------------------
+    # --- from shares to places and slopes --------------------------------------------------------
 
     def places(self, p: FloatArray) -> FloatArray:
         """The vertices, in the same unit; (V, 2)."""
@@ -190,9 +190,9 @@ class Equations:
         points, slopes = self.split(x)
         along = points[self.ends[:, 1]] - points[self.ends[:, 0]]
         jump = slopes[self.sides[:, 0]] - slopes[self.sides[:, 1]]
-        return (along[:, 0] * jump[:, 1] - along[:, 1] * jump[:, 0]) / self.lengths
+        return np.asarray((along[:, 0] * jump[:, 1] - along[:, 1] * jump[:, 0]) / self.lengths)
 
-    # --- what has to vanish ------------------------------------------------------------------------
+    # --- what has to vanish ----------------------------------------------------------------------
 
     def closing(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The equations of folds, vertices and loops, and their derivatives by x."""
@@ -229,7 +229,7 @@ class Equations:
         )
         return values, reduced
 
-    # --- what has to stay positive -----------------------------------------------------------------
+    # --- what has to stay positive ---------------------------------------------------------------
 
     def margins(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """What has to be >= 0, in comparable units, and its derivatives.
@@ -290,7 +290,7 @@ class Equations:
         rows = [*self.vertices, *self.loops]
         return f"vertex {rows[k - len(self.slopes.folds)]} does not close"
 
-    # --- where the search begins -------------------------------------------------------------------
+    # --- where the search begins -----------------------------------------------------------------
 
     def first(self, p: FloatArray, least: FloatArray) -> FloatArray | None:
         """Shares of slopes with the letters at some places, which miss least to first order.
@@ -345,9 +345,7 @@ def _areas(points: FloatArray, corners: IndexArray) -> FloatArray:
     return np.asarray(d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0])
 
 
-def _constant(
-    slopes: FloatArray, panels: list[int], nu: int, ng: int
-) -> tuple[float, FloatArray]:
+def _constant(slopes: FloatArray, panels: list[int], nu: int, ng: int) -> tuple[float, FloatArray]:
     """(g_2 - g_4) . (g_2 + g_4 - g_1 - g_3), and its derivatives."""
     one, two, three, four = slopes[panels]
     row = np.zeros(nu + ng)
