@@ -121,7 +121,7 @@ class Wanted(FoldOptions):
                 )
         self._refuse_branches()
         with Bar("reading") as bar:
-            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            cell = asked_cell(self.file, self.reading, self.cell, verbose=self.verbose)
             motion = roll(
                 cell,
                 self.direction,

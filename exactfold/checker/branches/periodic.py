@@ -12,8 +12,9 @@ vectors s: the span of the cone C_s. The evidence shows for every pair which spa
               A fold whose row is a factor of a form is flat where the other factor is not 0.
   spaces      a `basis` on which all forms vanish, and points of the space. The cone of every sign
               vector that agrees with a point off its flat vertices F lies in the radical, on all a
-              with K_u(point, a) = 0 for u not in F, of the sum of the K_v with v in F; and this has
-              to be the space.
+              with K_u(point, a) = 0 for u not in F, of the sum of the K_v with v in F. Where a K_v
+              is a multiple of a square there, it lies in the radical of K_v, and so on. The last
+              of these has to be the space.
 
 The claims list each branch by the side on which the first vertex that is not flat pops up:
 `vertex_signs`, `multiplicity`, the sign `b`, and `letters` for the edges (u, v, i, j) in increasing

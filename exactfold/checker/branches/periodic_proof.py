@@ -173,15 +173,24 @@ class PeriodicProof:
         flat = [v for v in forms.labels if not any(_dot(r, point) for r in forms.bends_at[v])]
         fixed = [_image(forms.forms[v], point) for v in forms.labels if v not in flat]
         normal = kernel(fixed, forms.size + 1)
-        sums = [
-            [sum((_dot(_image(forms.forms[v], a), c) for v in flat), Fraction(0)) for c in normal]
-            for a in normal
-        ]
-        radical = [_combined(weights, normal) for weights in kernel(sums, len(normal))]
-        require(_canonical(radical) == space, "a point of a space lies in a larger one")
+        around = self._radical(flat, normal)
+        while squares := [
+            smaller for v in flat if len(smaller := self._radical([v], around)) == len(around) - 1
+        ]:
+            around = squares[0]  # the form is a multiple of a square
+        require(_canonical(around) == space, "a point of a space lies in a larger one")
         signs = [_sign(_dot(row, point)) for row in forms.vertices.values()]
         for completed in product(*((s,) if s else (1, -1) for s in signs)):
             self._cover(completed)
+
+    def _radical(self, vertices: list[int], space: list[Row]) -> list[Row]:
+        """The radical of the sum of the forms of some vertices on a space."""
+        forms = [self.forms.forms[v] for v in vertices]
+        sums = [
+            [sum((_dot(_image(form, a), c) for form in forms), Fraction(0)) for c in space]
+            for a in space
+        ]
+        return [_combined(weights, space) for weights in kernel(sums, len(space))]
 
     def _line(self, ray: Row) -> None:
         signs = [_sign(_dot(row, ray)) for row in self.forms.vertices.values()]

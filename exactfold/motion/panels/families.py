@@ -177,7 +177,7 @@ def follow_family(
     `solid` and `stops` are those of `follow_panels`.
 
     Raises `UsageError` for an `until` or `frames` that make no sense, and `NotFollowedError` if no
-    motion in this direction is found in floats.
+    motion in this direction is found in floats, or the sheet has holes.
 
     >>> from exactfold.design import match_panels
     >>> matched = match_panels("bird-base")
@@ -188,6 +188,8 @@ def follow_family(
     goal = goal_angle(until)
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion needs at least 2")
+    if pattern.holes:
+        raise NotFollowedError("motions of families are not followed round holes")
     closing = Closing(pattern)
     first = _first_angles(pattern, closing, densities)
     path, end = _path(closing, first)

@@ -121,6 +121,29 @@ def test_parallel_loops_at_two_vertices_make_a_pleat() -> None:
     assert across.families[0].dimension == 2
 
 
+@pytest.mark.parametrize(
+    ("vertices", "seed", "flips", "expected"),
+    [
+        # All heights that are flat at the vertex with four folds are solutions.
+        (3, 461, 3, (0, [1], [2])),
+        # A plane of pleats, and two isolated solutions.
+        (5, 891, 5, (2, [2], [])),
+        # A line of a family is flat at three vertices; beside the family a form is a square.
+        (5, 649, 5, (0, [1], [2])),
+        (5, 844, 0, (0, [1], [2])),
+    ],
+)
+def test_spaces_of_random_cells(
+    vertices: int, seed: int, flips: int, expected: tuple[int, list[int], list[int]]
+) -> None:
+    result = count_periodic(random_cell(vertices, seed, 64, flips=flips), (1, 0))
+    assert result.status is PROVED
+    pleats, families = ([s.dimension for s in x] for x in (result.pleats, result.families))
+    assert (result.distinct, pleats, families) == expected
+    claims = checker.check(periodic_certificate(result))
+    assert [s["dimension"] for s in claims["families"]] == families
+
+
 def test_pleats_do_not_depend_on_the_direction() -> None:
     known = {frozenset(count_periodic("miura-cell", n).pleats) for n in ((3, 4), (1, 0), (0, 1))}
     assert len(known) == 1
