@@ -75,7 +75,7 @@ class FoldOptions(WayOptions):
         typer.Option(
             parser=exact_number,
             metavar="T",
-            help="Contacts of rigid panels of this thickness, in the unit of the sheet.",
+            help="Contacts of panels of this thickness, in the unit of the sheet.",
         ),
     ] = None
     hinge: Annotated[
