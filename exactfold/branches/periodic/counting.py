@@ -13,7 +13,7 @@ from exactfold._support.plurals import agreeing
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.exactly import ExactRay, exact_rays
-from exactfold.branches.periodic.lines import agree, covering
+from exactfold.branches.periodic.lines import agree, covering, rational_point
 from exactfold.branches.periodic.rays import Ray, prove_rays
 from exactfold.branches.periodic.result import Evidence, PeriodicCount
 from exactfold.branches.periodic.shown import Shown, sorted_branches
@@ -78,6 +78,11 @@ def count_periodic(
         if exact is not None:
             left = [rays.signs[row].tolist() for row in missing]
             left = [s for s in left if not any(agree(cover.signs, s) for cover in covers)]
+            for point in map(rational_point, exact):
+                cover = None if point is None else Spaces(problem).at(point)
+                if cover is not None and any(agree(cover.signs, s) for s in left):
+                    covers.append(cover)
+                    left = [s for s in left if not agree(cover.signs, s)]
             lines = covering(exact, left)
             found = tuple(proved.values()), tuple(covers), lines or ()
             evidence = None if lines is None else Evidence(problem, *found)

@@ -1,4 +1,4 @@
-"""Lines of solutions over quadratic fields, for certificates."""
+"""Rational solutions, and lines over quadratic fields, of exact rays: for certificates."""
 
 from __future__ import annotations
 
@@ -35,6 +35,15 @@ class QuadraticLine:
         point = [_at(entry, root, radicand) for entry in ray.entries]
         first = next(pair for pair in point if any(pair))
         return cls(radicand, tuple(_over(pair, first, radicand) for pair in point), ray)
+
+
+def rational_point(ray: ExactRay) -> tuple[Fraction, ...] | None:
+    """The point z of a ray that is rational; else None."""
+    known = ray.root.root_class
+    if known.degree != 1:
+        return None
+    root = Fraction(-known.polynomial[0], known.polynomial[1]), Fraction(0)
+    return tuple(_at(entry, root, 0)[0] for entry in ray.entries)
 
 
 def covering(
