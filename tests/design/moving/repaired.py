@@ -4,6 +4,9 @@ Each crease pattern below the folder whose panels do not truly start to fold wit
 is given to `designed`, with a limit of time and of folds: first with vertices of the border that
 move along it, then freely. A row for each says what `designed` answers, and by which share of the
 width vertices were moved. A new sheet counts only if `match` proves that its panels truly fold.
+
+With `--rounded STEPS` drawings are taken whose panels do fold with their letters: their inner
+vertices are rounded to so many steps over the width, so that they miss.
 """
 
 from __future__ import annotations
@@ -12,22 +15,36 @@ import argparse
 import csv
 import time
 from collections import Counter
+from fractions import Fraction
 from pathlib import Path
 
 from exactfold import PROVED, UNDECIDED
 from exactfold._support.clock import Clock
 from exactfold.design import designed, match_panels
-from exactfold.errors import ExactfoldError
+from exactfold.errors import ExactfoldError, NotCountedError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.drawing.formats.read import READERS
 from exactfold.pattern.opening import open_pattern, panels
-from exactfold.pattern.panel_pattern import EnclosedPattern
+from exactfold.pattern.panel_pattern import EnclosedPattern, PanelPattern
 from exactfold.pattern.reading import Reading
 
 NAMES = ("file", "folds", "border", "moved", "answer")
 
 
-def row(path: Path, limit: float, most: int) -> tuple[str, ...] | None:
+def missed(sheet: PanelPattern, steps: int) -> PanelPattern:
+    """The sheet with its inner vertices rounded to so many steps over its width."""
+    step = Fraction(max(float(x) for x, _ in sheet.vertices)) - Fraction(
+        min(float(x) for x, _ in sheet.vertices)
+    )
+    points = list(sheet.vertices)
+    for v in sheet.interior:
+        points[v] = tuple(
+            round(Fraction(float(c)) / step * steps) * step / steps for c in points[v]
+        )
+    return PanelPattern(points, sheet.edges)
+
+
+def row(path: Path, limit: float, most: int, steps: int | None) -> tuple[str, ...] | None:
     """The row of a file; None if it is no near miss, or none that is looked at."""
     try:
         opened = open_pattern(path)
@@ -41,10 +58,19 @@ def row(path: Path, limit: float, most: int) -> tuple[str, ...] | None:
         return None
     try:
         before = match_panels(sheet, drawn, clock=Clock(limit))
-        if before.truly is PROVED:
+        if (before.truly is PROVED) != (steps is not None):
             return None
+        if steps is not None:
+            sheet = missed(sheet, steps)
+            if match_panels(sheet, drawn, clock=Clock(limit)).truly is PROVED:
+                return None
         for border in ("along", "free"):
-            found = designed(sheet, drawn, border=border, clock=Clock(limit))
+            try:
+                found = designed(sheet, drawn, border=border, clock=Clock(limit))
+            except NotCountedError:  # a corner with an irrational coordinate
+                if border == "free":
+                    raise
+                continue
             if found.status is not UNDECIDED:
                 break
     except ExactfoldError as error:
@@ -66,13 +92,14 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=60)
     parser.add_argument("--most", type=int, default=200, help="the most folds")
     parser.add_argument("--only", default="")
+    parser.add_argument("--rounded", type=int, metavar="STEPS", help="drawings made to miss")
     asked = parser.parse_args()
     rows = []
     for path in sorted(asked.folder.rglob("*")):
         if path.suffix.lower()[1:] not in READERS or asked.only not in str(path):
             continue
         start = time.process_time()
-        if (found := row(path, asked.limit, asked.most)) is not None:
+        if (found := row(path, asked.limit, asked.most, asked.rounded)) is not None:
             found = (str(path.relative_to(asked.folder)), *found[1:])
             rows.append(found)
             print(*found, f"{time.process_time() - start:.1f} s", sep="  ", flush=True)
