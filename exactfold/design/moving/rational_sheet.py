@@ -36,6 +36,9 @@ _SMALL = 1e-7
 """Singular values below this share of the largest count as 0."""
 _OFF = 0.05
 """An exact sheet is this close to what floats propose, as a share of the box."""
+_LONGEST = 2000
+"""Slopes with more bits are given up: in a mesh of many loops each is several times as long as
+those before."""
 _ORDERS = 12
 """So many choices of the slopes that are solved for are tried."""
 
@@ -303,6 +306,8 @@ class _Making:
             else:
                 share = area(around, slopes) / dot(d, d)
                 slopes[f] = slopes[f][0] - share * d[1], slopes[f][1] + share * d[0]
+            if max(c.denominator.bit_length() for c in slopes[f]) > _LONGEST:
+                return None
             for one, image in self.maps:
                 x, y = one.applied(slopes[f])
                 slopes[image[f]] = one.turns * x, one.turns * y
