@@ -160,6 +160,10 @@ class Spaces:
         point = self._rounded(near, basis, rows)
         if point is None or self.flat_on([point]) != flat:
             return None
+        return self.at(point)
+
+    def at(self, point: Row) -> Cover | None:
+        """The cover by a rational solution, if all forms vanish on its Z."""
         space = self.around(point)
         if not self.solves(space):
             return None

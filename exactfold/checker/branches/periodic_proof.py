@@ -23,6 +23,7 @@ from ..sheets.boxes import Box, read_box
 from ..sheets.cell import Cell, CellChart, CellForms, Corner, Row, read_corners
 from ..sheets.sheet import turn
 from .listing import UPSIDE_DOWN
+from .periodic_lines import LineClaim, QuadraticLine
 
 _SIGNS = {1: "+", -1: "-", 0: "0"}
 _LETTERS = {1: "V", -1: "M", 0: "F", None: "U"}
@@ -67,6 +68,8 @@ class PeriodicProof:
         self.families: list[list[Row]] = []
         self._rays(items(evidence["rays"], "rays"))
         self._spaces(items(evidence["spaces"], "spaces"))
+        self.lines: list[LineClaim] = []
+        self._lines(items(evidence.get("lines", []), "lines"))
         missing = (1 << self.forms.size) - len(self.covered)
         require(not missing, f"{missing} pairs of opposite sign vectors are not covered")
         self.branches.sort(key=lambda branch: branch["vertex_signs"].translate(_ORDER))
@@ -196,6 +199,25 @@ class PeriodicProof:
         signs = [_sign(_dot(row, ray)) for row in self.forms.vertices.values()]
         letters = [_LETTERS[_sign(_dot(row, ray))] for row in self.forms.folds]
         self._branch(signs, _sign(ray[-1]), letters)
+
+    def _lines(self, entries: list[Any]) -> None:
+        """Cover the sign vectors of lines over quadratic fields."""
+        known: list[Any] = []
+        for entry in entries:
+            line = QuadraticLine(self.forms, entry)
+            require(entry not in known, "a line is listed twice")
+            known.append(entry)
+            signs = [line.sign(row) for row in self.forms.vertices.values()]
+            for completed in product(*((s,) if s else (1, -1) for s in signs)):
+                self._cover(completed)
+            bend = [Fraction(0)] * self.forms.size + [Fraction(1)]
+            if b := line.sign(bend):
+                letters = [_LETTERS[line.sign(row)] for row in self.forms.folds]
+                self._branch(signs, b, letters)
+            else:
+                heights = zip(self._heights(line.whole), self._heights(line.roots), strict=True)
+                shown = [[_text(x) for x in pair] for pair in heights]
+                self.lines.append({"radicand": line.radicand, "line": shown})
 
     def _level(self, basis: list[Row]) -> list[Row]:
         """The part of a space with b = 0."""

@@ -70,7 +70,7 @@ def test_a_cell_is_folded_and_written(tmp_path: Path) -> None:
     assert json.loads(proved.stdout)["status"] == "proved"
     words = run("fold", *given, "--until", "30deg", "--frames", "3").stdout
     assert "2 across 1,2" in words
-    assert "followed in floats" in " ".join(words.split())
+    assert "the frames and the first contact were computed in floats" in " ".join(words.split())
     for arguments, message in (
         (("waterbomb-cell",), "give --direction X,Y"),
         ((*given, "--certificate", tmp_path / "c"), "have no --certificate"),
