@@ -119,13 +119,12 @@ class _PanelSearch:
                     best = equations, last
                 if last.off > _REACHED or self.interrupted:
                     continue
-                for sheet in rational_sheets(equations, last.x, _DIGITS):
+                for sheet, exact in rational_sheets(equations, last.x, _DIGITS):
                     answer = self._match(sheet)
                     if answer.truly is PROVED:
                         return self._result(sheet, PROVED, _BEGINS)
-                    if answer.starts is PROVED and to_second_order is None:
-                        to_second_order = sheet
-                    if answer.starts is PROVED:
+                    if exact or answer.starts is PROVED:
+                        to_second_order = to_second_order or sheet
                         break
             if self.interrupted or self.clock.passed:
                 break
@@ -179,7 +178,7 @@ class _PanelSearch:
             equations = Equations(self.slopes, self.within, loops)
             for last in self._attempts(equations):
                 if last.off <= _REACHED:
-                    for sheet in rational_sheets(equations, last.x, _DIGITS):
+                    for sheet, _ in rational_sheets(equations, last.x, _DIGITS):
                         if self._match(sheet).truly is PROVED:
                             return equations, last.x
         return None

@@ -198,7 +198,8 @@ def test_exact_sheets_are_refused_where_floats_are_wrong():
     slopes = equations.first(np.zeros(equations.moves.shape[1]), np.ones(len(sheet.folds)))
     start = np.concatenate([np.zeros(equations.moves.shape[1]), slopes])
     *_, last = descended(equations.closing, equations.margins, start, 16, 0.1, 100)
-    assert next(rational_sheets(equations, last.x, (4,))).faces == sheet.faces
+    made, exact = next(rational_sheets(equations, last.x, (4,)))
+    assert (made.faces, exact) == (sheet.faces, True)
     turned = last.x.copy()
     turned[16:] *= -1
     assert not list(rational_sheets(equations, turned, (4, 6)))
