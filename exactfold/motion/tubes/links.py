@@ -14,7 +14,7 @@ from exactfold.motion.tubes.piece import PARAMETER_BITS, Ball
 from exactfold.motion.tubes.tube import Tube, prove_tube
 
 _LEAST = 1e-7  # the shortest step, in the unit of the framework
-_EXIT = 7, 8  # the motion enters the next tube at this fraction of the reach
+_EXIT = 3, 4  # the motion enters the next tube at this fraction of the reach
 _AHEAD = 0.6  # the next tube has its centre about this share of the reach beyond the exit
 _GROWTH = 0.5, 1.2  # the expected growth of the reach from tube to tube lies between these
 FINE, ROUGH = 1e-7, 1e-5
