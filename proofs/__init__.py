@@ -18,6 +18,7 @@ MODULES: tuple[str, ...] = (
     "kapovich_millson",
     "all_real",
     "periodic",
+    "periodic_directions",
     "generic",
     "exceptions",
     "potential",

@@ -19,16 +19,15 @@ from exactfold._support.verdict import PROVED
 from exactfold.branches import PeriodicCount, count_periodic
 from exactfold.exact.linalg import inertia_by_elimination, nullspace, rank
 from exactfold.pattern import PeriodicPattern, random_cell, read_cell
-from exactfold.pattern.periodic.cells import Corner, Face
+from exactfold.pattern.periodic.cells import Corner
 from exactfold.rigidity.curvature import star_matrix
 from exactfold.rigidity.equations.periodic import PeriodicProblem
+from proofs.cells import ONE, TWO, Vector, curvatures
 from proofs.framework import Proof, Script, run
 
 NAME = "periodic"
 TITLE = "Tessellations: all branches are real, one for each pair of sign vectors"
 DIRECTIONS = ((3, 4), (1, 0), (-2, 5))
-
-Vector = Sequence[Any]
 
 
 def prove(change: str | None = None) -> Proof:
@@ -93,48 +92,6 @@ def _state(script: Script) -> None:
 
 # --- the sum of the curvatures --------------------------------------------------------------------
 
-Corners = tuple[Face, ...]
-ONE: Corners = (((0, 0, 0), (0, 1, 0), (0, 1, 1)), ((0, 0, 0), (0, 1, 1), (0, 0, 1)))
-"""The grid with one vertex."""
-TWO: Corners = (
-    ((0, 0, 0), (0, 1, 0), (1, 0, 0)),
-    ((0, 1, 0), (1, 1, 0), (1, 0, 0)),
-    ((1, 0, 0), (1, 1, 0), (0, 1, 1)),
-    ((1, 0, 0), (0, 1, 1), (0, 0, 1)),
-)
-"""Two vertices, each on a row of loop edges."""
-
-
-def _curvatures(
-    faces: Corners, lattice: Sequence[Vector], points: Sequence[Vector], height: Any
-) -> list[Any]:
-    """K_v of each vertex, with any numbers; `height(corner, place)` is a height."""
-
-    def place(corner: Corner) -> Vector:
-        v, i, j = corner
-        return [points[v][k] + i * lattice[0][k] + j * lattice[1][k] for k in (0, 1)]
-
-    values = []
-    for v in range(len(points)):
-        turn: dict[Corner, Corner] = {}
-        for face in faces:
-            for k in range(3):
-                (u, i, j), (a, ai, aj), (b, bi, bj) = face[k], face[k - 2], face[k - 1]
-                if u == v:
-                    turn[a, ai - i, aj - j] = (b, bi - i, bj - j)
-        cycle = [min(turn)]
-        while (after := turn[cycle[-1]]) != cycle[0]:
-            cycle.append(after)
-        spots = [(corner, place(corner)) for corner in ((v, 0, 0), *cycle)]
-        matrix = star_matrix(
-            [(p[0] - points[v][0], p[1] - points[v][1]) for _, p in spots[1:]], lambda a, b: a / b
-        )
-        h = [height(*spot) for spot in spots]
-        values.append(
-            sum(h[i] * m * h[j] for i, row in enumerate(matrix) for j, m in enumerate(row))
-        )
-    return values
-
 
 def _sums(script: Script) -> None:
     names = "a1 a2 b1 b2 x y w p q r"
@@ -148,7 +105,7 @@ def _sums(script: Script) -> None:
         return own + (p * s * s + 2 * q * s * t + r * t * t) / 2
 
     for faces, points in ((ONE, [(x * 0, x * 0)]), (TWO, [(x * 0, x * 0), (x, y)])):
-        total = sum(_curvatures(faces, lattice, points, height))
+        total = sum(curvatures(faces, lattice, points, height))
         script.identity(
             f"Lemma 1 for all cells and heights of {len(points)} vertices: the K_v add up to the "
             "area of the cell times det B",
@@ -206,7 +163,7 @@ def _special_cases(script: Script) -> None:
 
     script.identity(
         "V = 1: (n . x)^2 / 2 is a solution for all lattices and directions",
-        *_curvatures(ONE, lattice, [(zero, zero)], rolled),
+        *curvatures(ONE, lattice, [(zero, zero)], rolled),
         of="T.16",
     )
     level = script.alter("the rows of loops are not level", 0, 1)
@@ -218,7 +175,7 @@ def _special_cases(script: Script) -> None:
     script.identity(
         "parallel loop edges at two vertices: heights that are level along them are a pleat, for "
         "all positions",
-        *_curvatures(TWO, lattice, [(zero, zero), (x, y)], pleat),
+        *curvatures(TWO, lattice, [(zero, zero), (x, y)], pleat),
         of="T.16",
     )
     script.identity(
@@ -265,7 +222,7 @@ def _waterbomb(four: int) -> list[Any]:
         (QQ(x.numerator, x.denominator), QQ(y.numerator, y.denominator)) for x, y in cell.lattice
     ]
     left = []
-    for value in _curvatures(cell.faces, lattice, points, height):
+    for value in curvatures(cell.faces, lattice, points, height):
         total = value * 0
         for powers, c in value.numer.terms():
             total += (

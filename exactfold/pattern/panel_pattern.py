@@ -226,8 +226,8 @@ class PanelPattern(Picture):
         if self.holes:
             raise NotCountedError(
                 f"the sheet has {counted(len(self.holes), 'hole')}, and {what} is not done yet for "
-                "sheets with holes: `count` says how they start to fold, and `info`, `vertices`, "
-                "`convert`, `draw` and `view` take them"
+                "sheets with holes: `count` says how they start to fold, and `fold`, `info`, "
+                "`vertices`, `convert`, `draw` and `view` take them"
             )
 
     def _check_boundary(self) -> None:

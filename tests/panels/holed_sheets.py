@@ -101,3 +101,18 @@ ACROSS = PanelPattern(
     holes=[(6, 7, 8, 9)],
 )
 """A straight crease, interrupted by a square hole."""
+
+_POINTS = [
+    *((0, 0), (6, 0), (12, 0), (12, 8), (6, 8), (0, 8)),
+    *((4, 2), (6, 2), (7, 2), (7, 3), (5, 3), (4, 3)),
+    *((4, 5), (5, 5), (7, 5), (7, 6), (6, 6), (4, 6)),
+]
+POP_UP = PanelPattern(
+    _POINTS,
+    [
+        *((k + a, (k + 1) % 6 + a) for a in (0, 6, 12) for k in range(6)),
+        *((1, 7), (4, 16), (11, 12), (10, 13), (9, 14)),
+    ],
+    holes=[tuple(range(6, 12)), tuple(range(12, 18))],
+)
+"""A page whose spine is interrupted by a step between two holes: a pop-up with parallel folds."""

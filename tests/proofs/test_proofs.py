@@ -42,6 +42,7 @@ LONG = (
     "length_equations",
     "multiplicity",
     "periodic",
+    "periodic_directions",
     "random_squares",
     "second_order_motions",
     "vertex_eigenvalues",

@@ -11,7 +11,8 @@ from exactfold.app.verbs.counting import opened_cell
 from exactfold.errors import UsageError
 from exactfold.exact.numbers import format_rational
 from exactfold.pattern.drawing.bounds import read_bytes
-from exactfold.pattern.opening import is_cell_file
+from exactfold.pattern.opening import Opened, is_cell_file
+from exactfold.pattern.periodic.cells import Side
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 from exactfold.pattern.reading import Reading
 
@@ -23,6 +24,27 @@ def asked_cell(
 
     `number` is the value of --cell. Raises the errors of `read_any` and `opened_cell`.
     """
+    return _asked(file, reading, number, verbose=verbose)[0]
+
+
+def asked_cell_with_letters(
+    file: Path, reading: Reading, number: tuple[int, int] | None, *, verbose: bool
+) -> tuple[PeriodicPattern, dict[Side, str]]:
+    """The same, with the letters of a drawing by edges of the cell; there are none in a cell file.
+
+    Raises the errors of `drawn_letters`, too.
+    """
+    from exactfold.pattern.periodic.drawn import drawn_letters
+
+    cell, opened = _asked(file, reading, number, verbose=verbose)
+    if opened is None:
+        return cell, {}
+    return cell, drawn_letters(opened.sheet, opened.letters, number or (1, 1))
+
+
+def _asked(
+    file: Path, reading: Reading, number: tuple[int, int] | None, *, verbose: bool
+) -> tuple[PeriodicPattern, Opened | None]:
     from exactfold.pattern.periodic.cell_files import parse_cell_bytes
     from exactfold.pattern.periodic.drawn import other_lattices, repeated
 
@@ -30,7 +52,7 @@ def asked_cell(
     if is_cell_file(path):
         if number is not None:
             raise UsageError(f"{file} is a cell: leave out --cell")
-        return parse_cell_bytes(read_bytes(path), name_of(file))
+        return parse_cell_bytes(read_bytes(path), name_of(file)), None
     opened = read_any(file, reading, verbose=verbose, doubted=False)
     cell = opened_cell(opened, number or (1, 1))
     first, second = (", ".join(map(format_rational, vector)) for vector in cell.lattice)
@@ -49,4 +71,4 @@ def asked_cell(
             f"it shows {most[0]} x {most[1]} equal cells: --cell {most[0]},{most[1]} takes one "
             "of them"
         )
-    return cell
+    return cell, opened

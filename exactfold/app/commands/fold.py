@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.commands.branch import also_found
@@ -32,6 +32,8 @@ from exactfold.pattern.opening import Opened, has_branches, is_cell_file
 from exactfold.pattern.writing.fold_writing import checked_target, require_folder
 
 if TYPE_CHECKING:  # following branches does not need it
+    from collections.abc import Callable
+
     from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.motion import PanelMotion
     from exactfold.motion.panels.proving import PanelProof
@@ -121,7 +123,7 @@ class Wanted(FoldOptions):
                 )
         self._refuse_branches()
         with Bar("reading") as bar:
-            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            cell = asked_cell(self.file, self.reading, self.cell, verbose=self.verbose)
             motion = roll(
                 cell,
                 self.direction,
@@ -184,7 +186,9 @@ class Wanted(FoldOptions):
             say(also_found(chosen.others))
         return chosen
 
-    def _along(self, chosen: ChosenBranch, bar: Bar, held: tuple[int, ...] | None = None) -> Motion:
+    def _along(
+        self, chosen: ChosenBranch, bar: Bar, held: tuple[int, ...] | None = None
+    ) -> Motion | FamilyMotion:
         return along(
             chosen,
             until=self.until,
@@ -241,7 +245,8 @@ class Wanted(FoldOptions):
         if isinstance(motion, Motion) and isinstance(chosen, ChosenBranch):
             from exactfold.motion.persistence import prove_persistently
 
-            again = partial(self._along, chosen, bar)
+            # without plates, which are no `Motion`
+            again = cast("Callable[[tuple[int, ...]], Motion]", partial(self._along, chosen, bar))
             return prove_persistently(motion, again, progress=bar)
         bar("proving")
         return prove(motion)

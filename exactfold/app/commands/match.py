@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED
-from exactfold.app.commands.cells import asked_cell
+from exactfold.app.commands.cells import asked_cell, asked_cell_with_letters
 from exactfold.app.options.branches import MatchOptions
 from exactfold.app.options.choosing import given_letters
 from exactfold.app.shell.patterns import located, read_any
@@ -35,6 +35,7 @@ from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.drawing.bounds import read_text
 from exactfold.pattern.opening import Opened, is_cell_file, triangles
 from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.periodic.cells import Side
 
 _RIMS = 16
 """Default of --most if boundary heights are looked for: the number of sign vectors tried."""
@@ -52,10 +53,12 @@ class Asked(MatchOptions):
         the sheet does not start to fold with them. Raises the errors of `read_any`, `triangles` and
         `match`, and `UsageError` if the letters do not fit the folds or the file has none.
         """
-        if is_cell_file(located(self.file)):
+        if self.periodic and self.direction is not None:
+            raise UsageError("give --direction, or --periodic for rigid panels")
+        if self.periodic or self.direction is not None or is_cell_file(located(self.file)):
             return self._periodic()
-        if self.direction is not None:
-            raise UsageError("--direction goes with the cell of a periodic sheet")
+        if self.cell is not None:
+            raise UsageError("--cell goes with --direction or --periodic")
         begin = time.perf_counter()
         clock = Clock(self.limit)
         nearest = None
@@ -106,23 +109,32 @@ class Asked(MatchOptions):
         from exactfold.branches.periodic.counting import count_periodic
         from exactfold.panels.periodic.modes import count_panel_cell
 
-        if self.letters in (None, DRAWN):
-            raise UsageError("a cell has no letters: give them with --letters")
         if self.certificate is not None:
             raise UsageError("the letters of a periodic sheet have no certificate")
-        text = (self.letters or "").removeprefix("@")
-        letters = read_text(text) if self.letters != text else text
-        letters = "".join(letters.split())
+        given = None if self.letters in (None, DRAWN) else self.letters
         with Bar("reading") as bar:
-            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            if given is None:
+                cell, drawn = asked_cell_with_letters(
+                    self.file, self.reading, self.cell, verbose=self.verbose
+                )
+                if not drawn:
+                    raise UsageError(
+                        f"{name_of(self.file)}: the cell has no letters: give them with --letters"
+                    )
+            else:
+                cell = asked_cell(self.file, self.reading, self.cell, verbose=self.verbose)
+                text = given.removeprefix("@")
+                drawn, given = {}, read_text(text) if given != text else text
             bar("solving")
             if self.direction is None:
                 panels = count_panel_cell(cell, limit=self.limit)
                 folds, direction = panels.folds, None
+                letters = _in_order(given, drawn, folds)
                 answer, ways = panels.with_letters(letters)
             else:
                 rolled = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
                 folds, direction = cell.edges, list(rolled.direction)
+                letters = _in_order(given, drawn, folds)
                 answer, ways = rolled.with_letters(letters)
         if self.as_json:
             document: PeriodicMatchDocument = {
@@ -185,6 +197,13 @@ class Asked(MatchOptions):
                 "letters with --letters"
             )
         return given_letters(pattern, self.letters)
+
+
+def _in_order(given: str | None, drawn: Mapping[Side, str], folds: Sequence[Side]) -> str:
+    """The letters of the folds of a cell: those that are given, or else those of the drawing."""
+    if given is None:
+        return "".join(drawn.get(fold, "U") for fold in folds)
+    return "".join(given.split())
 
 
 def _in_reach(pattern: CreasePattern) -> None:

@@ -40,8 +40,9 @@ class Wanted(ViewOptions):
         if self.direction is not None or is_cell_file(located(self.file)):
             self._rolling(output, visible(name), clock)
             return
-        if self.patch is not None:
-            raise UsageError("--patch goes with --direction X,Y")
+        for option, value in (("--patch", self.patch), ("--cell", self.cell)):
+            if value is not None:
+                raise UsageError(f"{option} goes with --direction X,Y")
         with Bar("reading") as bar, interruptible():
             opened = read_any(self.file, self.reading, verbose=self.verbose, doubted=False)
             document = write_view(
@@ -68,7 +69,7 @@ class Wanted(ViewOptions):
         if self.is_named and self.way is None:
             raise UsageError("only --way N, --patch, --frames and --prove go with --direction")
         with Bar("reading") as bar, interruptible():
-            cell = asked_cell(self.file, self.reading, None, verbose=self.verbose)
+            cell = asked_cell(self.file, self.reading, self.cell, verbose=self.verbose)
             document = write_rolling_view(
                 cell,
                 self.direction,

@@ -14,9 +14,11 @@ from exactfold.app.shell.parameters import (
     PROGRAM_NAMES,
     BoundaryHeights,
     Curvature,
+    DrawnCells,
     Json,
     Limit,
     Pattern,
+    Periodic,
     PrescribedAngles,
     degrees,
     direction_vector,
@@ -85,10 +87,12 @@ class MatchOptions(ReadingOptions):
         typer.Option(
             parser=direction_vector,
             metavar="X,Y",
-            help="For the cell of a periodic sheet: compare the branches of `count --direction`. "
-            "Without it, the motions of rigid panels.",
+            help="For a periodic sheet: compare the branches of `count --direction`. Without it, "
+            "the motions of rigid panels.",
         ),
     ] = None
+    periodic: Periodic = False
+    cell: DrawnCells = None
     tries: Annotated[
         int | None,
         number(

@@ -13,6 +13,7 @@ from exactfold.app.options.ways import WayOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Dask,
+    DrawnCells,
     Json,
     Pattern,
     PrescribedAngles,
@@ -74,7 +75,7 @@ class FoldOptions(WayOptions):
         typer.Option(
             parser=exact_number,
             metavar="T",
-            help="Contacts of rigid panels of this thickness, in the unit of the sheet.",
+            help="Contacts of panels of this thickness, in the unit of the sheet.",
         ),
     ] = None
     hinge: Annotated[
@@ -133,6 +134,7 @@ class FoldOptions(WayOptions):
     ] = None
     direction: RollDirection = None
     patch: RollPatch = None
+    cell: DrawnCells = None
     proving: Annotated[
         bool,
         flag(
@@ -145,8 +147,14 @@ class FoldOptions(WayOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if (self.patch is not None or self.proving) and self.direction is None:
-            raise UsageError("--patch and --prove go with --direction X,Y")
+        if self.direction is None:
+            for option, given in (
+                ("--patch", self.patch is not None),
+                ("--cell", self.cell is not None),
+                ("--prove", self.proving),
+            ):
+                if given:
+                    raise UsageError(f"{option} goes with --direction X,Y")
         if self.way is not None or self.letters is not None:
             for option, value in (
                 ("--drive", self.drive),

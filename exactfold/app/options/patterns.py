@@ -12,12 +12,13 @@ from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.shell.parameters import (
     BoundaryHeights,
     Curvature,
+    DrawnCells,
     Json,
     Limit,
     Pattern,
     Patterns,
+    Periodic,
     Resume,
-    cell_numbers,
     complete_method,
     direction_or_all,
     distance,
@@ -98,23 +99,8 @@ class CountOptions(ReadingOptions):
             "the cell of one if its opposite sides match.",
         ),
     ] = None
-    periodic: Annotated[
-        bool,
-        flag(
-            "--periodic",
-            text="Take a drawing for the cell of a periodic sheet of rigid panels, and count the "
-            "motions that repeat in each cell.",
-        ),
-    ] = False
-    cell: Annotated[
-        tuple[int, int] | None,
-        typer.Option(
-            parser=cell_numbers,
-            metavar="I,J",
-            help="For a drawing with --direction or --periodic: it shows I times J cells. "
-            "Default: 1,1.",
-        ),
-    ] = None
+    periodic: Periodic = False
+    cell: DrawnCells = None
     curvature: Curvature = None
     boundary_heights: BoundaryHeights = None
     as_json: Json = False

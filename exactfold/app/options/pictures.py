@@ -11,10 +11,10 @@ from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
     ALL,
     BoundaryHeights,
+    DrawnCells,
     RollDirection,
     RollPatch,
     Side,
-    cell_numbers,
     duration,
     flag,
     number,
@@ -55,14 +55,7 @@ class DrawOptions(WayOptions):
             "--most N draws the folds of the first N; default: 8.",
         ),
     ] = None
-    cell: Annotated[
-        tuple[int, int] | None,
-        typer.Option(
-            parser=cell_numbers,
-            metavar="I,J",
-            help="For a drawing with --direction: it shows I times J cells. Default: 1,1.",
-        ),
-    ] = None
+    cell: DrawnCells = None
     output: Annotated[
         Path | None,
         typer.Option(
@@ -112,6 +105,7 @@ class ViewOptions(WayOptions):
     frames: Annotated[int, number("Number of frames of each motion.", least=2)] = 32
     direction: RollDirection = None
     patch: RollPatch = None
+    cell: DrawnCells = None
     proving: Annotated[
         bool,
         flag(

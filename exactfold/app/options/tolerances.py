@@ -51,6 +51,13 @@ def goal(text: object) -> str:
     return str(text)
 
 
+def border_rule(text: object) -> str:
+    """How vertices of the border may move."""
+    if text not in ("along", "free"):
+        raise typer.BadParameter(f"{text!r} is none of along, free")
+    return str(text)
+
+
 @dataclass(frozen=True, eq=False, repr=False, match_args=False)
 class DesignOptions(WayOptions):
     """The options of `exactfold design`; `UsageError` if they do not go together."""
@@ -76,6 +83,18 @@ class DesignOptions(WayOptions):
         str | None,
         typer.Option(metavar="5,7", help="These vertices stay where they are; corners always do."),
     ] = None
+    symmetric: Annotated[
+        bool,
+        flag("--symmetric", text="Keep the symmetries of the sheet and its letters."),
+    ] = False
+    border: Annotated[
+        Literal["along", "free"],
+        typer.Option(
+            parser=border_rule,
+            metavar="along|free",
+            help="Vertices of the border move along it (corners stay), or freely, too.",
+        ),
+    ] = "along"
     output: Annotated[
         Path | None,
         written("Write the new sheet.", "NEW.fold", "-o", "--output"),
@@ -85,7 +104,7 @@ class DesignOptions(WayOptions):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.letters is None and self.maximise is None:
+        if self.letters is None and self.maximise is None and self.way is None:
             raise UsageError("give --letters that are wanted, or --maximise, or both")
         if self.maximise in ("margin", "stroke") and not self.is_named:
             raise UsageError(

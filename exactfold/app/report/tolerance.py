@@ -11,6 +11,7 @@ from rich.text import Text
 
 from exactfold.app.report.terminal import facts_table, listed, more_text, status_text
 from exactfold.exact.numbers import decimal_above, decimal_below, decimal_near
+from exactfold.exact.surds import rational
 
 if TYPE_CHECKING:
     from exactfold.design.moving.result import Designed
@@ -56,7 +57,9 @@ def design_report(found: Designed) -> Group:
     if found.signs:
         rows.append(("branch", found.signs))
     if found.before is None or found.after is None:
-        return Group(facts_table(list(rows)))
+        if found.pattern is not found.original:
+            rows.append(("moved", f"by at most {found.largest_move:.3g}"))
+        return Group(facts_table(list(rows)), *_moved(found))
     if found.goal == "letters":
         names = {True: "nearly lost at", False: "missing by"}
         for name, value in (("before", found.before), ("after", found.after)):
@@ -74,7 +77,7 @@ def _moved(found: Designed) -> list[Table | Text]:
     pairs = zip(found.original.vertices, found.pattern.vertices, strict=True)
     moved = [(v, after) for v, (before, after) in enumerate(pairs) if before != after]
     for v, (x, y) in moved:
-        table.add_row(str(v), decimal_near(x, 12), decimal_near(y, 12))
+        table.add_row(str(v), *(decimal_near(rational(c), 12) for c in (x, y)))
     return [Text(""), table] if moved else []
 
 

@@ -382,8 +382,26 @@ RollDirection = Annotated[
         "--direction",
         parser=direction_vector,
         metavar="X,Y",
-        help="For the cell of a periodic sheet: the direction in which it rolls up. --way N is the "
-        "way of `count --direction`, in which all edges fold.",
+        help="For a periodic sheet: the direction in which it rolls up. --way N is the way of "
+        "`count --direction`, in which all edges fold. A drawing is taken for the cell of one if "
+        "its opposite sides match.",
+    ),
+]
+DrawnCells = Annotated[
+    tuple[int, int] | None,
+    typer.Option(
+        "--cell",
+        parser=cell_numbers,
+        metavar="I,J",
+        help="For a drawing of a periodic sheet: it shows I times J cells. Default: 1,1.",
+    ),
+]
+Periodic = Annotated[
+    bool,
+    flag(
+        "--periodic",
+        text="Take a drawing for the cell of a periodic sheet of rigid panels, and count the "
+        "motions that repeat in each cell.",
     ),
 ]
 RollPatch = Annotated[

@@ -39,6 +39,8 @@ def begun(
     asked = by_fold(folds, letters) if letters is not None else opened.letters
     if not {"M", "V"} & set(asked.values()) or with_letters(answer.known, asked):
         return None, ""
+    if answer.known.pattern.holes:
+        return None, not_the_drawn("")
     matched = match_panels(opened, asked, clock=Clock(SECONDS))
     if matched.starts is REFUTED:
         none = "it is proved that the sheet does not start to fold with the mountains and valleys "

@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from exactfold._support.progress import Progress
+from exactfold._support.verdict import PROVED
 from exactfold.app.verbs.choosing import choose, listed
 from exactfold.app.verbs.choosing_panels import panels_way
 from exactfold.app.verbs.chosen import Choice, ChosenBranch, ChosenPanels, Letters, on_side
@@ -15,7 +16,7 @@ from exactfold.branches.counting.find import BoundaryHeights, Signs
 from exactfold.branches.values.branch import Branch
 from exactfold.branches.values.result import BranchCount
 from exactfold.design.assignments.result import MatchedRay
-from exactfold.errors import NotFollowedError, UsageError
+from exactfold.errors import NotFollowedError, UndecidedBranchError, UsageError
 from exactfold.motion.curves.events import STOP
 from exactfold.motion.curves.motion import Motion
 from exactfold.motion.curves.stops import Stops
@@ -31,6 +32,8 @@ from exactfold.motion.solid.plates import Solid
 from exactfold.panels.result import Decomposition
 from exactfold.pattern.crease_pattern import Edge
 from exactfold.pattern.loading import PatternLike, open_sheet
+from exactfold.pattern.opening import panels
+from exactfold.pattern.panel_pattern import PanelPattern
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -71,7 +74,8 @@ def follow(
     when the sheet is flat again, and a number, or "time=1.5", at that time. The motion has `frames`
     frames, at equal steps of time, or of the angle of the fold `by`. `side` is -1 for the mirror
     image. `held` has the corners of the face that does not move. With `stops` the motion ends at
-    the latest where the first fold reaches its stop. `solid` makes plates of rigid panels.
+    the latest where the first fold reaches its stop. `solid` makes plates of panels; along a branch
+    their motion is a `FamilyMotion`, in floats.
 
     These arguments are for branches only: `boundary_heights` are for a sheet with more than four
     corners. `drive` gives angles in degrees to which folds are driven
@@ -132,13 +136,20 @@ def along(
     solid: Solid | None = None,
     stops: Stops | None = None,
     progress: Progress | None = None,
-) -> Motion:
-    """The motion along a branch that was chosen; the arguments are those of `follow`."""
+) -> Motion | FamilyMotion:
+    """The motion along a branch that was chosen; the arguments are those of `follow`.
+
+    With `solid` the triangles are plates, and the motion is followed by its fold angles.
+    """
     if solid is not None:
-        raise UsageError(
-            "thickness is for ways of rigid panels, and this sheet of triangles folds along a "
-            "branch; its faces are followed without thickness"
-        )
+        refused = {
+            "going on through branch points": through_branch_points,
+            "by": by,
+            "drive": chosen.drive,
+        }
+        if named := next((name for name, value in refused.items() if value), None):
+            raise UsageError(f"{named} does not go with thickness along a branch")
+        return _thick_branch(chosen, until, frames, held, solid, stops)
     pinned = None
     if held is not None:
         if len(held) != 3:
@@ -169,6 +180,43 @@ def along(
     return replace(motion, end=STOP, events=(*before, stop), stops=stops)
 
 
+def _thick_branch(
+    chosen: ChosenBranch,
+    until: str | float,
+    frames: int,
+    held: Sequence[int] | None,
+    solid: Solid,
+    stops: Stops | None,
+) -> FamilyMotion:
+    """The motion of plates along a branch, from its first-order fold angles on."""
+    branch = chosen.branch
+    if branch.pattern.Ve != 4:
+        raise UsageError(
+            "thickness along a branch is followed on sheets with four corners: on others many "
+            "motions begin along one branch"
+        )
+    thin = follow_branch(branch, side=chosen.side, frames=2)  # refuses what cannot be followed
+    if branch.status is not PROVED:
+        raise UndecidedBranchError(f"branch {branch.sign_text} is not proved: {branch.reason}")
+    pattern = panels(branch.pattern)
+    densities = {
+        fold: chosen.side * float(low + high) / 2
+        for fold, (low, high) in branch.fold_angles.densities.items()
+    }
+    motion = follow_family(
+        pattern,
+        densities,
+        until=str(until),
+        frames=frames,
+        held=_face(pattern, thin.pinned if held is None else held),
+        solid=solid,
+        stops=stops,
+    )
+    # One curve is tangent to the branch, also where more folds seem free to first order.
+    signs = MatchedRay(branch, chosen.side).sign_text
+    return replace(motion, drivers=motion.drivers[:1], branch=signs)
+
+
 def along_panels(
     chosen: ChosenPanels,
     *,
@@ -192,7 +240,7 @@ def along_panels(
             chosen.direction.densities,
             until=str(until),
             frames=frames,
-            held=0 if held is None else _face(chosen.answer.known, held),
+            held=0 if held is None else _face(chosen.answer.known.pattern, held),
             way=None if way is None else way.number,
             solid=solid,
             stops=stops,
@@ -213,7 +261,7 @@ def along_panels(
         until=str(until),
         frames=frames,
         by=by,
-        held=0 if held is None else _face(known, held),
+        held=0 if held is None else _face(known.pattern, held),
         solid=solid,
         stops=stops,
     )
@@ -301,9 +349,9 @@ def _refuse_of_panels(choice: Choice, through_branch_points: bool) -> None:
         )
 
 
-def _face(ways: Decomposition, corners: Sequence[int]) -> int:
+def _face(pattern: PanelPattern, corners: Sequence[int]) -> int:
     """The number of the panel with these corners."""
-    for number, face in enumerate(ways.pattern.faces):
+    for number, face in enumerate(pattern.faces):
         if set(face) == set(corners):
             return number
     raise UsageError(f"held {tuple(corners)}: no panel has these corners")

@@ -21,6 +21,7 @@ from exactfold.app.viewer.folded import (
     closing_ways,
     flat_states,
     folded_sheet,
+    with_holes,
 )
 from exactfold.app.viewer.listing import Drawn, Facts, Listed, file_letters, listed_ways
 from exactfold.app.viewer.marks import Mark, marks_of
@@ -214,7 +215,11 @@ class Known:
         states = flat_states(self.opened, clock)
         sheets = [folded_sheet(one, clock) for one in states]
         ends = [] if not states else [*self.ends(states, ways, pool, clock, progress)]
-        left = "" if states else f"{clock.said}; `exactfold flat` looks for flat-folded states"
+        left = f"{clock.said}; `exactfold flat` looks for flat-folded states"
+        if states:
+            left = ""
+        elif with_holes(self.opened):
+            left = "folding flat is not done yet for sheets with holes"
         return {"sheets": sheets, "ends": sorted(ends, key=lambda end: end["way"]), "left": left}
 
     def ends(

@@ -23,6 +23,7 @@ from exactfold.layers.folding import fold_flat
 from exactfold.motion.curves.events import FLAT_FOLD
 from exactfold.motion.panels.listing import PanelWay, panel_ways
 from exactfold.pattern.opening import Opened
+from exactfold.pattern.panel_pattern import PanelPattern
 
 if TYPE_CHECKING:
     from exactfold.app.viewer.listing import Listed
@@ -111,12 +112,18 @@ class Folded(TypedDict):
 NOT_ASKED: Final[Folded] = {"sheets": [], "ends": [], "left": ""}
 
 
+def with_holes(opened: Opened) -> bool:
+    """Whether the sheet has holes."""
+    return isinstance(opened.sheet, PanelPattern) and bool(opened.sheet.holes)
+
+
 def flat_states(opened: Opened, clock: Clock) -> tuple[FlatStates, ...]:
     """The flat-folded states with the letters of the file, if it has some, and with any letters.
 
-    Those with any letters are not asked for if no letters help, or if the clock has passed.
+    Those with any letters are not asked for if no letters help, or if the clock has passed. There
+    are none of a sheet with holes, which is not folded flat.
     """
-    if clock.passed:
+    if clock.passed or with_holes(opened):
         return ()
     found = fold_flat(opened, limit=clock.left)
     by_angles = any(one.condition == "kawasaki" for one in found.failures)

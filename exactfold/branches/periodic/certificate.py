@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from exactfold._support.verdict import PROVED
+from exactfold.branches.periodic.counting import pleat_spaces
+from exactfold.branches.periodic.lines import Pair
 from exactfold.branches.periodic.result import AlgebraicLine, HeightSpace, PeriodicCount
 from exactfold.branches.periodic.shown import Shown, sorted_branches
 from exactfold.branches.periodic.spaces import Cover, Space
@@ -35,13 +37,16 @@ def periodic_certificate(result: PeriodicCount) -> dict[str, Any]:
     evidence = result.evidence
     if evidence is None:
         raise NotApplicableError(
-            "a Groebner basis proved the count, as a solution with flat vertices or a pleat is "
-            "irrational; no certificate states that"
+            "a Groebner basis proved the count, as a solution with flat vertices or a pleat lies "
+            "in no quadratic field; no certificate states that"
         )
     shown = Shown(evidence.problem)
     found = [shown.branch(ray.signs, ray.b, ray.in_box) for ray in evidence.rays]
-    lines = {cover.space for cover in evidence.covers if cover.space.is_ray}
-    found += [shown.exact_branch(space.basis[0]) for space in lines]
+    spaces = dict.fromkeys(cover.space for cover in evidence.covers)
+    found += [shown.exact_branch(space.basis[0]) for space in spaces if space.is_ray]
+    exact = [line.ray for line in evidence.lines]
+    found += [shown.branch(ray.signs, ray.b, ray.letters) for ray in exact if ray.b]
+    pleats = [shown.space(basis) for basis in pleat_spaces(spaces)]
     branches: list[PeriodicBranchClaim] = [
         {
             "vertex_signs": branch.vertex_signs,
@@ -56,18 +61,25 @@ def periodic_certificate(result: PeriodicCount) -> dict[str, Any]:
         "distinct": len(result.branches),
         "with_multiplicity": sum(branch.multiplicity for branch in result.branches),
         "branches": branches,
-        "pleats": _claims(result.pleats),
+        "pleats": _claims(pleats),
         "families": _claims(result.families),
         "sha256": result.pattern.sha256,
     }
     points: dict[Space, list[Cover]] = defaultdict(list)
     for cover in evidence.covers:
         points[cover.space].append(cover)
+    lines = [_line(line.radicand, line.point) for line in evidence.lines]
+    if lines:
+        claims["lines"] = [
+            {"radicand": line.radicand, "line": _line(0, shown.pairs(line.point))["point"]}
+            for line in evidence.lines
+            if not line.ray.b
+        ]
     cell = cell_document(result.pattern)
     pattern = {"lattice": cell["lattice"], "vertices": cell["points"], "faces": cell["faces"]}
     return {
         "format": PERIODIC.format,
-        "version": PERIODIC.version,
+        "version": 2 if lines else 1,
         "pattern": pattern,
         "claims": claims,
         "evidence": {
@@ -84,6 +96,7 @@ def periodic_certificate(result: PeriodicCount) -> dict[str, Any]:
                 }
                 for space, covers in points.items()
             ],
+            **({"lines": lines} if lines else {}),
         },
     }
 
@@ -94,6 +107,10 @@ def _claims(spaces: Iterable[HeightSpace | AlgebraicLine]) -> list[SpaceClaim]:
         for space in spaces
         if isinstance(space, HeightSpace)
     ]
+
+
+def _line(radicand: int, point: Iterable[Pair]) -> dict[str, Any]:
+    return {"radicand": radicand, "point": [_texts(pair) for pair in point]}
 
 
 def _texts(row: Row) -> list[str]:

@@ -13,6 +13,7 @@ from exactfold._support.plurals import agreeing
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.exactly import ExactRay, exact_rays
+from exactfold.branches.periodic.lines import agree, covering, rational_point
 from exactfold.branches.periodic.rays import Ray, prove_rays
 from exactfold.branches.periodic.result import Evidence, PeriodicCount
 from exactfold.branches.periodic.shown import Shown, sorted_branches
@@ -75,7 +76,17 @@ def count_periodic(
     if result.status is not PROVED and not clock.passed:
         exact = exact_rays(problem)
         if exact is not None:
-            result = _of_exact(problem, exact)
+            left = [rays.signs[row].tolist() for row in missing]
+            left = [s for s in left if not any(agree(cover.signs, s) for cover in covers)]
+            for point in map(rational_point, exact):
+                cover = None if point is None else Spaces(problem).at(point)
+                if cover is not None and any(agree(cover.signs, s) for s in left):
+                    covers.append(cover)
+                    left = [s for s in left if not agree(cover.signs, s)]
+            lines = covering(exact, left)
+            found = tuple(proved.values()), tuple(covers), lines or ()
+            evidence = None if lines is None else Evidence(problem, *found)
+            result = replace(_of_exact(problem, exact), evidence=evidence)
     if result.status is not PROVED and clock.passed:
         result = replace(result, reason=f"{result.reason} after {clock.limit:g} seconds")
     return replace(result, seconds=time.perf_counter() - start)
@@ -92,18 +103,12 @@ def _covered(
         for row, ray in zip(missing, limits, strict=True):
             if clock.passed:
                 break
-            if any(covers_signs(cover, rays.signs[row].tolist()) for cover in covers):
+            if any(agree(cover.signs, rays.signs[row].tolist()) for cover in covers):
                 continue
             cover = spaces.cover(ray) if np.isfinite(ray).all() else None
-            if cover is not None and covers_signs(cover, rays.signs[row].tolist()):
+            if cover is not None and agree(cover.signs, rays.signs[row].tolist()):
                 covers.append(cover)
     return covers
-
-
-def covers_signs(cover: Cover, signs: Sequence[float]) -> bool:
-    """Whether a sign vector, or its opposite, agrees with a cover off the flat vertices."""
-    pairs = [(s, e) for s, e in zip(cover.signs, signs, strict=True) if s]
-    return all(s == e for s, e in pairs) or all(s == -e for s, e in pairs)
 
 
 def _result(
@@ -120,7 +125,7 @@ def _result(
         for row in range(len(rays.signs))
         if row not in proved
         for signs in [rays.signs[row].astype(int).tolist()]
-        if not any(covers_signs(cover, signs) for cover in covers)
+        if not any(agree(cover.signs, signs) for cover in covers)
     ]
     number = len(rays.signs)
     total = f"{number} {agreeing(number, 'pair')} of opposite sign vectors"

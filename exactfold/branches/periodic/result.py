@@ -24,6 +24,7 @@ from exactfold.exact.numbers import format_integer, format_rational
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 
 if TYPE_CHECKING:
+    from exactfold.branches.periodic.lines import QuadraticLine
     from exactfold.branches.periodic.rays import Ray
     from exactfold.branches.periodic.spaces import Cover
     from exactfold.rigidity.equations.periodic import PeriodicProblem
@@ -186,11 +187,15 @@ class PeriodicDocument(TypedDict):
 
 @dataclass(frozen=True)
 class Evidence:
-    """How each sign vector is proved: by a simple ray in a box, or by a space over Q."""
+    """How each sign vector is proved: by a simple ray in a box, by a space, or by a line.
+
+    Spaces are over Q, and lines over quadratic fields.
+    """
 
     problem: PeriodicProblem
     rays: tuple[Ray, ...]
     covers: tuple[Cover, ...]
+    lines: tuple[QuadraticLine, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)

@@ -71,6 +71,12 @@ class Shown:
         """A space in the heights w of all vertices, 0 at the first, and b."""
         return HeightSpace(tuple(tuple(self._heights(row)) for row in basis))
 
+    def pairs(self, point: Sequence[tuple[Fraction, Fraction]]) -> list[tuple[Fraction, Fraction]]:
+        """The heights w and b of a point with two rational parts."""
+        one, other = ([pair[k] for pair in point] for k in (0, 1))
+        heights = self._heights(tuple(one)), self._heights(tuple(other))
+        return list(zip(*heights, strict=True))
+
     def _heights(self, row: Row) -> list[Fraction]:
         problem = self.problem
         b = row[-1] * problem.unit

@@ -4,7 +4,8 @@ All solutions form linear spaces: the spans L_e of the cones C_e of sign vectors
 (docs/tessellations.md, Theorem 15). Take h in C_e. Let F be the vertices that are flat in h, N the
 space of all a with K_u(h, a) = 0 for all u that are not in F, and Z the radical, on N, of the sum
 of the K_v with v in F. If all K_v vanish on Z, then Z is a component of the solutions, and it holds
-C_s for every s that agrees with h off F (docs/tessellations.md, Theorem 17).
+C_s for every s that agrees with h off F (docs/tessellations.md, Theorem 17). A form that is a
+multiple of a square on Z vanishes on its radical only, which then takes the place of Z.
 """
 
 from __future__ import annotations
@@ -113,18 +114,20 @@ class Spaces:
         )
 
     def around(self, point: Row) -> tuple[Row, ...]:
-        """The space Z of a solution, in reduced echelon form."""
+        """The space Z of a solution, or a smaller one by squares, in reduced echelon form."""
         flat = self.flat_on([point])
         rows = [
             _image(star.form, point) for v, star in enumerate(self.problem.stars) if v not in flat
         ]
-        size = self.problem.sheet.V
-        normal = nullspace(rows) if rows else [list(row) for row in _identity(size)]
-        sums = [
-            [sum(_dot(_image(self.problem.stars[v].form, a), c) for v in flat) for c in normal]
-            for a in normal
-        ]
-        return echelon([combined(weights, normal) for weights in nullspace(sums)] if normal else [])
+        normal = nullspace(rows) if rows else _identity(self.problem.sheet.V)
+        forms = [self.problem.stars[v].form for v in sorted(flat)]
+        space = _radical(_summed(forms), normal) if forms else [*map(tuple, normal)]
+        while True:
+            radicals = (_radical(form, space) for form in forms)
+            smaller = next((r for r in radicals if len(r) == len(space) - 1), None)
+            if smaller is None:
+                return echelon(space)
+            space = smaller
 
     def cover(self, ray: FloatArray) -> Cover | None:
         """A space that holds C_e, and the proof, from floats near a ray of C_e; or None."""
@@ -143,18 +146,28 @@ class Spaces:
     def _covered(self, ray: FloatArray, flat: frozenset[int]) -> Cover | None:
         rows = [row for v in flat for row in self.problem.bends_at[v]]
         size = self.problem.sheet.V
-        flat_space = nullspace(rows) if rows else [list(row) for row in _identity(size)]
-        if not flat_space:
+        level = echelon(nullspace(rows) if rows else _identity(size))
+        if not level:
             return None
-        frame = np.linalg.qr(floats([tuple(row) for row in flat_space]).T)[0]
-        near = self._refined(ray, frame, flat)
-        basis = None if near is None else self._guessed(near, flat)
+        near: FloatArray | None = ray
+        basis: tuple[Row, ...] | None = level
+        if not self.solves(level):
+            frame = np.linalg.qr(floats(level).T)[0]
+            near = self._refined(ray, frame, flat)
+            basis = None if near is None else self._guessed(near, flat)
         if near is None or basis is None or not self.solves(basis):
             return None
         point = self._rounded(near, basis, rows)
-        if point is None or self.flat_on([point]) != flat or self.around(point) != basis:
+        if point is None or self.flat_on([point]) != flat:
             return None
-        return Cover(Space(basis, self.flat_on(basis)), point, self.values(point))
+        return self.at(point)
+
+    def at(self, point: Row) -> Cover | None:
+        """The cover by a rational solution, if all forms vanish on its Z."""
+        space = self.around(point)
+        if not self.solves(space):
+            return None
+        return Cover(Space(space, self.flat_on(space)), point, self.values(point))
 
     def _refined(
         self, ray: FloatArray, frame: FloatArray, flat: frozenset[int]
@@ -193,7 +206,7 @@ class Spaces:
     def _rounded(self, near: FloatArray, basis: Sequence[Row], rows: Sequence[Row]) -> Row | None:
         """A rational point of a space near a float point, on which the given rows vanish."""
         inner = [[_dot(row, vector) for vector in basis] for row in rows]
-        weights = nullspace(inner) if inner else [list(row) for row in _identity(len(basis))]
+        weights = nullspace(inner) if inner else _identity(len(basis))
         vectors = [combined(w, basis) for w in weights]
         if not vectors:
             return None
@@ -214,8 +227,22 @@ def combined(weights: Sequence[Fraction], vectors: Sequence[Sequence[Fraction]])
     return tuple(_dot(weights, column) for column in zip(*vectors, strict=True))
 
 
-def _identity(size: int) -> list[Row]:
-    return [tuple(Fraction(int(i == j)) for j in range(size)) for i in range(size)]
+def _summed(forms: Sequence[Sequence[Row]]) -> list[Row]:
+    return [
+        tuple(sum(entries, Fraction(0)) for entries in zip(*rows, strict=True))
+        for rows in zip(*forms, strict=True)
+    ]
+
+
+def _radical(form: Sequence[Row], basis: Sequence[Sequence[Fraction]]) -> list[Row]:
+    """A basis of the radical of a form on the span of a basis."""
+    images = [_image(form, row) for row in basis]
+    weights = nullspace([[_dot(image, row) for row in basis] for image in images]) if basis else []
+    return [combined(w, basis) for w in weights]
+
+
+def _identity(size: int) -> list[list[Fraction]]:
+    return [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
 
 
 def _null(rows: FloatArray) -> FloatArray:

@@ -12,8 +12,11 @@ vectors s: the span of the cone C_s. The evidence shows for every pair which spa
               A fold whose row is a factor of a form is flat where the other factor is not 0.
   spaces      a `basis` on which all forms vanish, and points of the space. The cone of every sign
               vector that agrees with a point off its flat vertices F lies in the radical, on all a
-              with K_u(point, a) = 0 for u not in F, of the sum of the K_v with v in F; and this has
-              to be the space.
+              with K_u(point, a) = 0 for u not in F, of the sum of the K_v with v in F. Where a K_v
+              is a multiple of a square there, it lies in the radical of K_v, and so on. The last
+              of these has to be the space.
+  lines       in version 2: points over quadratic fields, each with a line for its space. Those with
+              b = 0 are the claims `lines`, by heights w and b.
 
 The claims list each branch by the side on which the first vertex that is not flat pops up:
 `vertex_signs`, `multiplicity`, the sign `b`, and `letters` for the edges (u, v, i, j) in increasing
@@ -31,17 +34,23 @@ from ..core.reading import (
     integer,
     items,
     keys,
-    keys_of,
     parse_rational,
     refusing,
     require,
     same,
 )
 from ..sheets.cell import read_cell
+from .periodic_lines import LineClaim
 from .periodic_proof import PeriodicBranchClaim, PeriodicProof, SpaceClaim
 
+_NAMES = "direction distinct with_multiplicity branches pleats families sha256"
 
-class PeriodicClaims(TypedDict):
+
+class _Lines(TypedDict, total=False):
+    lines: list[LineClaim]
+
+
+class PeriodicClaims(_Lines):
     """All solutions for one direction; the counts are those of the isolated ones with b = 1."""
 
     direction: list[int]
@@ -57,8 +66,9 @@ class PeriodicClaims(TypedDict):
 def check(data: dict[str, Any]) -> PeriodicClaims:
     """Verify every claim of a certificate; raises `CertificateError` at the first failure."""
     claims, evidence = data["claims"], data["evidence"]
-    keys(claims, keys_of(PeriodicClaims), "claims")
-    keys(evidence, "triangles unit rays spaces", "evidence")
+    more = " lines" if data["version"] > 1 else ""
+    keys(claims, _NAMES + more, "claims")
+    keys(evidence, "triangles unit rays spaces" + more, "evidence")
     cell = read_cell(data["pattern"])
     x, y = map(integer, items(claims["direction"], "direction", 2))
     require((x, y) != (0, 0), "the direction is 0")
@@ -75,6 +85,8 @@ def check(data: dict[str, Any]) -> PeriodicClaims:
         "families": [proof.shown(rows) for rows in proof.families],
         "sha256": cell.sha256(),
     }
+    if more:
+        facts["lines"] = proof.lines
     for key, fact in facts.items():
         require(same(claims[key], fact), f"the claim {key!r} is not what the evidence shows")
     return facts
@@ -84,7 +96,9 @@ def summary(claims: PeriodicClaims) -> str:
     """One line that states the verified claims."""
     x, y = claims["direction"]
     found = counted(claims["distinct"], "branch", "branches")
-    pleats = counted(len(claims["pleats"]), "space of pleats", "spaces of pleats")
+    pleats = counted(
+        len(claims["pleats"]) + len(claims.get("lines", [])), "space of pleats", "spaces of pleats"
+    )
     families = counted(len(claims["families"]), "family", "families")
     return (
         f"VALID: {found} of a periodic sheet for the direction {x},{y}, "
@@ -95,7 +109,7 @@ def summary(claims: PeriodicClaims) -> str:
 
 PERIODIC = DocumentKind(
     format="exactfold periodic certificate",
-    versions=(1,),
+    versions=(1, 2),
     names="format version pattern claims evidence",
     claims=PeriodicClaims,
     check=check,

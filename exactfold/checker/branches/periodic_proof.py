@@ -23,6 +23,7 @@ from ..sheets.boxes import Box, read_box
 from ..sheets.cell import Cell, CellChart, CellForms, Corner, Row, read_corners
 from ..sheets.sheet import turn
 from .listing import UPSIDE_DOWN
+from .periodic_lines import LineClaim, QuadraticLine
 
 _SIGNS = {1: "+", -1: "-", 0: "0"}
 _LETTERS = {1: "V", -1: "M", 0: "F", None: "U"}
@@ -67,6 +68,8 @@ class PeriodicProof:
         self.families: list[list[Row]] = []
         self._rays(items(evidence["rays"], "rays"))
         self._spaces(items(evidence["spaces"], "spaces"))
+        self.lines: list[LineClaim] = []
+        self._lines(items(evidence.get("lines", []), "lines"))
         missing = (1 << self.forms.size) - len(self.covered)
         require(not missing, f"{missing} pairs of opposite sign vectors are not covered")
         self.branches.sort(key=lambda branch: branch["vertex_signs"].translate(_ORDER))
@@ -173,20 +176,48 @@ class PeriodicProof:
         flat = [v for v in forms.labels if not any(_dot(r, point) for r in forms.bends_at[v])]
         fixed = [_image(forms.forms[v], point) for v in forms.labels if v not in flat]
         normal = kernel(fixed, forms.size + 1)
-        sums = [
-            [sum((_dot(_image(forms.forms[v], a), c) for v in flat), Fraction(0)) for c in normal]
-            for a in normal
-        ]
-        radical = [_combined(weights, normal) for weights in kernel(sums, len(normal))]
-        require(_canonical(radical) == space, "a point of a space lies in a larger one")
+        around = self._radical(flat, normal)
+        while squares := [
+            smaller for v in flat if len(smaller := self._radical([v], around)) == len(around) - 1
+        ]:
+            around = squares[0]  # the form is a multiple of a square
+        require(_canonical(around) == space, "a point of a space lies in a larger one")
         signs = [_sign(_dot(row, point)) for row in forms.vertices.values()]
         for completed in product(*((s,) if s else (1, -1) for s in signs)):
             self._cover(completed)
+
+    def _radical(self, vertices: list[int], space: list[Row]) -> list[Row]:
+        """The radical of the sum of the forms of some vertices on a space."""
+        forms = [self.forms.forms[v] for v in vertices]
+        sums = [
+            [sum((_dot(_image(form, a), c) for form in forms), Fraction(0)) for c in space]
+            for a in space
+        ]
+        return [_combined(weights, space) for weights in kernel(sums, len(space))]
 
     def _line(self, ray: Row) -> None:
         signs = [_sign(_dot(row, ray)) for row in self.forms.vertices.values()]
         letters = [_LETTERS[_sign(_dot(row, ray))] for row in self.forms.folds]
         self._branch(signs, _sign(ray[-1]), letters)
+
+    def _lines(self, entries: list[Any]) -> None:
+        """Cover the sign vectors of lines over quadratic fields."""
+        known: list[Any] = []
+        for entry in entries:
+            line = QuadraticLine(self.forms, entry)
+            require(entry not in known, "a line is listed twice")
+            known.append(entry)
+            signs = [line.sign(row) for row in self.forms.vertices.values()]
+            for completed in product(*((s,) if s else (1, -1) for s in signs)):
+                self._cover(completed)
+            bend = [Fraction(0)] * self.forms.size + [Fraction(1)]
+            if b := line.sign(bend):
+                letters = [_LETTERS[line.sign(row)] for row in self.forms.folds]
+                self._branch(signs, b, letters)
+            else:
+                heights = zip(self._heights(line.whole), self._heights(line.roots), strict=True)
+                shown = [[_text(x) for x in pair] for pair in heights]
+                self.lines.append({"radicand": line.radicand, "line": shown})
 
     def _level(self, basis: list[Row]) -> list[Row]:
         """The part of a space with b = 0."""

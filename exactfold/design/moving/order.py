@@ -24,6 +24,7 @@ from exactfold.design.assignments.search import match
 from exactfold.design.moving.ascent import Place, raised
 from exactfold.design.moving.distances import fold_distances
 from exactfold.design.moving.goals import Distances, Margin, Sheets, signs_of
+from exactfold.design.moving.panel_order import Border, designed_panels
 from exactfold.design.moving.result import Designed
 from exactfold.design.moving.stroke import Stroke
 from exactfold.design.tolerance.parts import branch_part
@@ -36,7 +37,9 @@ from exactfold.errors import (
     UsageError,
 )
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.loading import PatternLike, as_pattern
+from exactfold.pattern.loading import PatternLike, as_pattern, open_sheet
+from exactfold.pattern.opened import panels, triangulated
+from exactfold.pattern.panel_pattern import PanelPattern
 
 Maximise: TypeAlias = Literal["tolerance", "margin", "stroke"]
 
@@ -60,12 +63,19 @@ def designed(
     maximise: Maximise | None = None,
     within: Fraction | None = None,
     fixed: Collection[int] = (),
+    symmetric: bool = False,
+    border: Border = "along",
     clock: Clock = UNLIMITED,
     progress: Progress | None = None,
 ) -> Designed:
-    """Move the inner vertices of a triangulated sheet with four corners until it folds as wanted.
+    """Move the vertices of a sheet until it folds as wanted.
 
     With `letters`, the result starts to fold with these mountains and valleys: `match` proves it.
+    Sheets of rigid panels take letters, alone or with the margin. There vertices move along the
+    border, too, the letter F holds a fold flat, and true motions begin with the letters
+    (docs/tolerance.md, 5). With `symmetric`, the symmetries of the sheet and its letters stay. With
+    the border "free", corners and all other vertices of the border move like those inside.
+    All else is about the inner vertices of triangulated sheets with four corners.
     With `maximise`, the tolerance, the margin of torques or the stroke, the length of the motion
     until faces touch, is raised: of the way with the letters, of `branch`, or, for the tolerance,
     of all ways. No vertex moves by more than `within` along an
@@ -86,8 +96,53 @@ def designed(
     (<Verdict.PROVED: 'proved'>, True)
     """
     start = time.perf_counter()
-    search = _Search(as_pattern(pattern), letters, branch, maximise, within, fixed, clock, progress)
+    sheet = open_sheet(pattern).sheet
+    if not isinstance(sheet, CreasePattern) or sheet.Ve != 4 or symmetric or border == "free":
+        moved = _of_panels(
+            sheet, letters, maximise, within, fixed, symmetric, border, clock, progress
+        )
+        return replace(moved, seconds=time.perf_counter() - start)
+    search = _Search(sheet, letters, branch, maximise, within, fixed, clock, progress)
     return replace(search.found(), seconds=time.perf_counter() - start)
+
+
+def _of_panels(
+    sheet: CreasePattern | PanelPattern,
+    letters: Mapping[Edge, str] | None,
+    maximise: Maximise | None,
+    within: Fraction | None,
+    fixed: Collection[int],
+    symmetric: bool,
+    border: Border,
+    clock: Clock,
+    progress: Progress | None,
+) -> Designed:
+    """The sheet of rigid panels that `designed` finds."""
+    if maximise in ("tolerance", "stroke"):
+        raise NotCountedError(
+            f"the {_NAMES[maximise]} is raised on triangulated sheets with four corners that stay, "
+            "without symmetries: sheets of panels take letters, alone or with the margin"
+        )
+    if letters is None:
+        raise UsageError("nothing is asked for: give letters")
+    given = panels(sheet) if isinstance(sheet, CreasePattern) else sheet
+    found = designed_panels(
+        given,
+        letters,
+        within,
+        fixed,
+        symmetric,
+        border,
+        maximise == "margin",
+        clock,
+        progress,
+    )
+    if not isinstance(sheet, CreasePattern):
+        return found
+    moved = found.pattern
+    if not isinstance(moved, CreasePattern):
+        moved = triangulated(moved) or moved
+    return replace(found, pattern=moved, original=sheet)
 
 
 @dataclass(frozen=True)
@@ -151,7 +206,7 @@ class _Search:
             if reached.status is not PROVED or self.maximise is None:
                 return reached
             found = _Search(
-                reached.pattern,
+                as_pattern(reached.pattern),
                 None,
                 find_branch(reached.pattern, reached.signs) if reached.signs else None,
                 self.maximise,

@@ -10,7 +10,13 @@ from typing import Literal, TypedDict
 from exactfold._support.documents import Assignment, Natural, NotNegative, SignsText, VerdictText
 from exactfold._support.verdict import Verdict
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
-from exactfold.pattern.described import PatternDocument, described
+from exactfold.pattern.described import (
+    PanelsDocument,
+    PatternDocument,
+    described,
+    described_panels,
+)
+from exactfold.pattern.panel_pattern import PanelPattern
 
 
 class DesignDocument(TypedDict):
@@ -18,9 +24,9 @@ class DesignDocument(TypedDict):
 
     format: Literal["exactfold design result"]
     version: Literal[1]
-    pattern: PatternDocument
+    pattern: PatternDocument | PanelsDocument
     """The new sheet."""
-    original: PatternDocument
+    original: PatternDocument | PanelsDocument
     """The sheet that was given."""
     status: VerdictText
     reason: str
@@ -33,7 +39,7 @@ class DesignDocument(TypedDict):
     """Of the given sheet: the proved tolerance, margin or stroke; for letters, in floating point,
     how far vertices may move before one of them is lost, negative if one is missing."""
     after: float | None
-    """The same of the new sheet; both are null if no vertex was moved."""
+    """The same of the new sheet; both are null if no vertex was moved, and for rigid panels."""
     largest_move: NotNegative
     """The largest distance by which a vertex moved, in floating point."""
     steps: Natural
@@ -53,8 +59,8 @@ class Designed:
     name the branch.
     """
 
-    pattern: CreasePattern
-    original: CreasePattern
+    pattern: CreasePattern | PanelPattern
+    original: CreasePattern | PanelPattern
     status: Verdict
     reason: str
     goal: str
@@ -70,15 +76,15 @@ class Designed:
     def largest_move(self) -> float:
         """The largest distance by which a vertex moved, in floats."""
         pairs = zip(self.pattern.vertices, self.original.vertices, strict=True)
-        return max(hypot(float(a - c), float(b - d)) for (a, b), (c, d) in pairs)
+        return max(hypot(float(a) - float(c), float(b) - float(d)) for (a, b), (c, d) in pairs)
 
     def to_dict(self, name: str | None = None, output: str | None = None) -> DesignDocument:
         """The object printed by `exactfold design --json`: `schema("design")`."""
         return {
             "format": "exactfold design result",
             "version": 1,
-            "pattern": described(self.pattern, output),
-            "original": described(self.original, name),
+            "pattern": _described(self.pattern, output),
+            "original": _described(self.original, name),
             "status": str(self.status),
             "reason": self.reason,
             "goal": self.goal,  # type: ignore[typeddict-item]
@@ -98,3 +104,11 @@ class Designed:
         if self.before is not None and self.after is not None:
             known = f", from {self.before:.3g} to {self.after:.3g}"
         return f"<Designed: {self.goal} {self.status}{known}, moved by {self.largest_move:.3g}>"
+
+
+def _described(
+    pattern: CreasePattern | PanelPattern, name: str | None
+) -> PatternDocument | PanelsDocument:
+    if isinstance(pattern, CreasePattern):
+        return described(pattern, name)
+    return described_panels(pattern, name)

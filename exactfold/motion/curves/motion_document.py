@@ -46,7 +46,8 @@ class FrameKeys(TypedDict):
     status: ProvedOrNot
     """Proved: of a branch, every frame is enclosed, so that a true configuration is near it; of
     panels, all vertices close exactly at all fold angles; of a periodic sheet, one curve of true
-    motions passes all frames. Undecided: the frames are floats."""
+    motions passes all frames, while its first contact is not proved. Undecided: the frames are
+    floats."""
     reason: str
     """What is proved of the frames, or how they were found: in floats along a proved branch, or
     along modes that truly fold."""

@@ -52,7 +52,7 @@ def certificate_of_panel_motion(
     stop first, and when. The times are those of `contacts`, made slightly weaker.
 
     Raises `NotApplicableError` if a vertex needs more than one square root besides those of the
-    coordinates.
+    coordinates, and for a sheet with holes.
 
     >>> from exactfold import checker
     >>> from exactfold.motion.panels.clearance import prove_contacts
@@ -63,6 +63,8 @@ def certificate_of_panel_motion(
     >>> checker.check(certificate_of_panel_motion(motion, prove_contacts(motion)))["drivers"]
     [[0, 4]]
     """
+    if motion.pattern.holes:
+        raise NotApplicableError("no certificate states that panels close round a hole")
     if motion.solid is not None or motion.stops is not None:
         return _certificate_of_built(motion, contacts)
     timing = Timing.of(motion)

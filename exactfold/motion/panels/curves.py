@@ -190,6 +190,11 @@ class _Vertex:
     """
 
     def __init__(self, star: Star, mode: LocalMode) -> None:
+        if star.hole is not None:
+            raise NotApplicableError(
+                "the half-angle tangents of the folds round a hole are not proportional; only such "
+                "motions can be followed"
+            )
         if len(star.folds) not in (2, 4):
             raise NotApplicableError(
                 f"vertex {star.vertex} has {len(star.folds)} active folds whose half-angle "

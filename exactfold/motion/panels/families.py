@@ -58,7 +58,8 @@ class FamilyMotion(PanelsInMotion):
     the projection of the first rates on those with which all vertices stay closed. The time is the
     length of the path of the fold angles, in radians. `dimension` is that of the family, and
     `drivers` are as many folds whose angles can be chosen independently near the middle of the
-    motion. The other fields are those of `PanelMotion`.
+    motion. `branch` has the vertex signs of the ray of a triangulated sheet that is followed so.
+    The other fields are those of `PanelMotion`.
     """
 
     pattern: PanelPattern
@@ -75,6 +76,7 @@ class FamilyMotion(PanelsInMotion):
     way: int | None = field(default=None, compare=False)
     solid: Solid | None = None
     stops: Stops | None = None
+    branch: str = ""
 
     @property
     def dimension(self) -> int:
@@ -104,6 +106,8 @@ class FamilyMotion(PanelsInMotion):
     @property
     def name(self) -> str:
         """What folds, in words."""
+        if self.branch:
+            return f"branch {self.branch}"
         family = f"a family with {counted(self.dimension, 'free fold angle')}"
         if self.way is None:
             return family
@@ -177,7 +181,7 @@ def follow_family(
     `solid` and `stops` are those of `follow_panels`.
 
     Raises `UsageError` for an `until` or `frames` that make no sense, and `NotFollowedError` if no
-    motion in this direction is found in floats.
+    motion in this direction is found in floats, or the sheet has holes.
 
     >>> from exactfold.design import match_panels
     >>> matched = match_panels("bird-base")
@@ -188,6 +192,8 @@ def follow_family(
     goal = goal_angle(until)
     if frames < 2:
         raise UsageError(f"{frames} frames: a motion needs at least 2")
+    if pattern.holes:
+        raise NotFollowedError("motions of families are not followed round holes")
     closing = Closing(pattern)
     first = _first_angles(pattern, closing, densities)
     path, end = _path(closing, first)
@@ -200,9 +206,6 @@ def follow_family(
     def angles_at(times: FloatArray) -> FloatArray:
         return np.array([np.interp(times, marks, column) for column in path.T]).T
 
-    def places(times: FloatArray) -> FloatArray:
-        return placing.positions(angles_at(times))[0]
-
     duration = float(marks[-1])
     largest = pi - _CLOSED if end != ANGLE else goal - _AT_GOAL
     closed = np.abs(path[-1]) > largest
@@ -211,6 +214,9 @@ def follow_family(
 
     def closed_at(times: FloatArray) -> FloatArray:
         return _closed(closing, angles_at(times))
+
+    def places(times: FloatArray) -> FloatArray:
+        return placing.positions(closed_at(times))[0]
 
     stop = None if stops is None else stops.first(pattern.folds, marks, closed_at)
     if stop is not None:

@@ -18,6 +18,7 @@ from exactfold.panels.modes.densities import Density, Roots
 from exactfold.panels.modes.extension import LINEAR, Extension, extension
 from exactfold.panels.result import Decomposition, Part
 from exactfold.panels.spaces.subspaces import Leaf
+from exactfold.panels.vertex import holes
 from exactfold.panels.vertex.holes import conditions
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.panels.vertex.stars import Star
@@ -60,13 +61,18 @@ class PanelMode:
         True is proved exactly. With tau = tan(angle / 2) / length, a vertex closes if and only if
         the vector part of the product of the quaternions 1 + tau_j d_j vanishes (docs/panels.md,
         All fold angles). On the line of its local mode this is a polynomial in T. It is expanded,
-        and all its coefficients have to be 0. That a hole closes is not looked at: False decides
-        nothing then.
+        and all its coefficients have to be 0. The same is done with the lines of the folds round a
+        hole (`exactfold.panels.vertex.holes.closes_always`).
         """
-        if any(star.hole is not None for star in self.stars):
-            return False
-        pairs = zip(self.stars, self.choice, strict=True)
-        return all(closes_always(star.directions, mode.values) for star, mode in pairs)
+        for star, mode in zip(self.stars, self.choice, strict=True):
+            if star.hole is None:
+                closes = closes_always(star.directions, mode.values)
+            else:
+                lines = dict(zip(star.hole.folds, star.hole.twists, strict=True))
+                closes = holes.closes_always([lines[fold] for fold in star.folds], mode.values)
+            if not closes:
+                return False
+        return True
 
     def order_from(self, start: Edge) -> tuple[tuple[int, Edge], ...]:
         """A walk through all vertices: positions in `stars`, each with a fold known by then.

@@ -143,11 +143,10 @@ class PanelMotion(PanelsInMotion):
     def reason(self) -> str:
         """What is proved about the motion, in words."""
         if self.closes is PROVED:
-            return (
-                "all vertices close exactly at all fold angles"
-                if self.curves
-                else "folds from boundary to boundary are free"
-            )
+            if not self.curves:
+                return "folds from boundary to boundary are free"
+            what = "vertices and holes" if self.pattern.holes else "vertices"
+            return f"all {what} close exactly at all fold angles"
         if self.exists is PROVED:
             return (
                 "each mode folds until a fold is at 180 degrees; its angles were followed in floats"

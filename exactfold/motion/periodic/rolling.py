@@ -51,7 +51,8 @@ class RollingMotion(SheetInMotion):
     flat sheet, in units of its own. `screws` has, for each frame, the angle in radians and the
     advance of both screws. The motion was followed in floats; if `tubes` is a number, so many tubes
     prove that one curve of true motions leads from the flat sheet past all frames, and each unknown
-    of a frame is within `radius` of a point of it. Contacts are in floats.
+    of a frame is within `radius` of a point of it. The first contact of faces is computed in
+    floats, and not proved.
     """
 
     counted: PeriodicCount
@@ -85,15 +86,15 @@ class RollingMotion(SheetInMotion):
         if self.tubes is not None:
             return (
                 f"one curve of true motions without a gap, {in_words(self.tubes, 'tube')}; each "
-                f"frame is within {self.radius:.1e} of it; contacts are in floats"
+                f"frame is within {self.radius:.1e} of it; the first contact is not proved"
             )
         branch = self.counted[self.way - 1]
         if "0" not in branch.vertex_signs and not self.counted.pleats:
             return (
                 "a true motion begins with this branch (docs/tessellations.md, Theorem 18); the "
-                "frames were followed in floats"
+                "frames and the first contact were computed in floats"
             )
-        return "followed in floats"
+        return "the frames and the first contact were computed in floats"
 
     @property
     def name(self) -> str:

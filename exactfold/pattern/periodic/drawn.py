@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from math import floor
 
 from exactfold.errors import NotApplicableError, NotPeriodicError, UsageError
 from exactfold.exact.numbers import format_rational
 from exactfold.exact.surds import rational
-from exactfold.pattern.crease_pattern import CreasePattern, Point
+from exactfold.pattern.crease_pattern import CreasePattern, Edge, Point
 from exactfold.pattern.panel_pattern import PanelPattern
 from exactfold.pattern.periodic.cells import Corner, Side
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
@@ -71,6 +71,39 @@ def drawn_cell(
                     (a, i, j), (b, n, m) = corners[u], corners[v]
                     diagonals.append((a, b, n - i, m - j))
     return PeriodicPattern((first, second), kept, faces, diagonals)
+
+
+def drawn_letters(
+    sheet: CreasePattern | PanelPattern,
+    letters: Mapping[Edge, str],
+    cells: tuple[int, int] = (1, 1),
+) -> dict[Side, str]:
+    """The letters of the edges of the cell that a sheet shows, from those of the sheet's folds.
+
+    Edges of which no translate has M, V or F, such as those on the border, are left out. Raises
+    `NotPeriodicError` if the letters differ between translates, and the errors of `drawn_cell`.
+
+    >>> import exactfold
+    >>> grid = exactfold.read("map-fold").sheet
+    >>> drawn_letters(grid, {(9, 10): "V"}, (4, 2))
+    {(0, 0, 1, 0): 'V'}
+    """
+    points, _, whole = _glued(sheet)
+    *_, corners, _ = _corners(points, whole, cells)
+    found: dict[Side, str] = {}
+    for edge, letter in letters.items():
+        if letter == "U":
+            continue
+        (a, i, j), (b, n, m) = (corners[v] for v in edge)
+        side = min(
+            (a, b, n - i, m - j), (b, a, i - n, j - m), key=lambda s: (s[:2], s[2:] < (0, 0))
+        )
+        if found.setdefault(side, letter) != letter:
+            raise NotPeriodicError(
+                f"the letters do not repeat: fold {edge[0]}-{edge[1]} is {letter}, and a translate "
+                f"of it is {found[side]}: take a larger cell"
+            )
+    return found
 
 
 def other_lattices(sheet: CreasePattern | PanelPattern) -> list[tuple[Point, Point]]:

@@ -254,11 +254,11 @@ class PeriodicProblem:
         """For each fold the rows m with K_v = m times the row of the fold, at an end v of it.
 
         On a solution the fold is flat wherever such an m is not 0. There is one at a vertex with
-        four folds, two of which are in line.
+        four folds, two of which are in line, and at others for some directions.
         """
         found: dict[Side, tuple[tuple[int, ...], ...]] = {}
         for edge, row in self.folds.items():
-            ends = [v for v in {*edge[:2]} if self.sheet.degree(v) == 4 and any(row)]
+            ends = sorted({*edge[:2]}) if any(row) else []
             factors = [other_factor(self.stars[v].form, row) for v in ends]
             found[edge] = tuple(integer_row(m) for m in factors if m is not None)
         return found

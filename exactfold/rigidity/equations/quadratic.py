@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import gcd
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from exactfold._support.arrays import FloatArray
 from exactfold.exact.numbers import over_common_denominator
+
+if TYPE_CHECKING:  # sheets with few vertices do without NumPy
+    from exactfold._support.arrays import FloatArray
 
 IntMatrix = tuple[tuple[int, ...], ...]
 
@@ -108,6 +109,8 @@ class QuadraticSystem:
     @cached_property
     def float_tensor(self) -> FloatArray:
         """S as floats of shape (n, n+1, n+1); each S_p is scaled to the largest entry 1."""
+        import numpy as np
+
         tensor = np.empty((self.size, self.size + 1, self.size + 1))
         for p, matrix in enumerate(self.matrices):
             largest = max((abs(x) for row in matrix for x in row), default=0) or 1

@@ -10,31 +10,25 @@ zero for each e, and Newton's steps are defined wherever g is differentiable. A 
 is flat, which is a multiple root of K = 0, is no worse conditioned than others. All this is
 floating point; nothing here is proved.
 
-Dense arrays solve a block of sign vectors at once, much faster than one after the other.
-`sparse_newton` solves for one sign vector on a sheet of any size, and `refined_newton` separates
-zeros that doubles cannot.
+Dense arrays solve a block of sign vectors at once, much faster than one after the other. `nappes`
+has the exact rows, and Newton's method without arrays for a few vertices. `sparse_newton` solves
+for one sign vector on a sheet of any size, and `refined_newton` separates zeros that doubles
+cannot.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
-from operator import mul
 
 import numpy as np
 
 from exactfold._support.arrays import BoolArray, FloatArray
-from exactfold.exact.linalg import integer_squares
-from exactfold.exact.numbers import over_common_denominator
-from exactfold.rigidity.curvature import curvature_form
 from exactfold.rigidity.equations.branch_system import Chart
 from exactfold.rigidity.equations.gauge import Gauge
-from exactfold.rigidity.timelike import round_cone
 from exactfold.solve.numeric.nappe_newton import NappeNewton, sign_vectors
-
-Row = tuple[Fraction, ...]
+from exactfold.solve.numeric.nappes import Nappe, nappes
 
 _FLAT = 1e-10
 
@@ -49,58 +43,6 @@ class SweptPoints:
     points: FloatArray
     converged: BoolArray
     steps: int
-
-
-@dataclass(frozen=True)
-class Nappe:
-    """l_v and A_v of one vertex as exact rows on (x, 1).
-
-    N_v is the sum of weight * (row . (x, 1))^2. A row is a tuple of integers and their common
-    denominator; a weight is a pair of integers and stands for their quotient. They are long and
-    hardly ever needed in lowest terms.
-    """
-
-    over_line: tuple[tuple[int, ...], int]
-    over_squares: tuple[tuple[tuple[int, int], tuple[tuple[int, ...], int]], ...]
-
-    @cached_property
-    def line(self) -> Row:
-        """The functional l_v as a row of fractions."""
-        row, below = self.over_line
-        return tuple(Fraction(c, below) for c in row)
-
-    @cached_property
-    def squares(self) -> tuple[tuple[Fraction, Row], ...]:
-        """The weights and rows as fractions."""
-        return tuple(
-            (Fraction(*weight), tuple(Fraction(c, below) for c in row))
-            for weight, (row, below) in self.over_squares
-        )
-
-    @property
-    def float_line(self) -> list[float]:
-        """The functional l_v, with each entry rounded once."""
-        row, below = self.over_line
-        return [c / below for c in row]
-
-    @property
-    def float_root(self) -> list[list[float]]:
-        """The matrix A_v: each row times the root of its weight."""
-        return [
-            [(over / under) ** 0.5 * (c / below) for c in row]
-            for (over, under), (row, below) in self.over_squares
-        ]
-
-    @property
-    def form(self) -> FloatArray:
-        """l_v^2 - N_v as a matrix on (x, 1), with each entry rounded once: scaled K_v minus k_v."""
-        terms = [(Fraction(1), self.line), *((-weight, row) for weight, row in self.squares)]
-        places = sorted({k for _, row in terms for k, c in enumerate(row) if c})
-        matrix = np.zeros((len(self.line), len(self.line)))
-        for i in places:
-            for j in places:
-                matrix[i, j] = float(sum((w * row[i] * row[j] for w, row in terms), Fraction(0)))
-        return matrix
 
 
 @dataclass(frozen=True)
@@ -121,39 +63,8 @@ class NappeSystem:
 
     @cached_property
     def nappes(self) -> tuple[Nappe, ...]:
-        """The exact data of the vertices of all unknowns; each l_v has coefficient 1 at the hub.
-
-        Write K_v = M / d, and let t be a cone and p = M t, in integers. Then l_v is p . h divided
-        by its coefficient p_v at the hub, and p_v^2 N_v = (p . h)^2 - (t . p) h^T M h.
-        """
-        gauge = self.gauge
-        size = len(gauge.unknowns) + 1
-        heights, unit = over_common_denominator(gauge.boundary_heights.values())
-        lift = {v: (k, unit) for k, v in enumerate(gauge.unknowns)}
-        lift |= {
-            v: (size - 1, h) for v, h in zip(gauge.boundary_heights, heights, strict=True) if h
-        }
-        nappes = []
-        for v in gauge.unknowns:
-            form, cone = curvature_form(gauge.sheet, v), round_cone(gauge.sheet, v)
-            t, _ = over_common_denominator(cone[u] for u in form.labels)
-            p = [sum(map(mul, row, t)) for row in form.integers]
-            top, hub = sum(map(mul, t, p)), p[form.labels.index(v)]
-            rest = [
-                [a * b - top * k for b, k in zip(p, row, strict=True)]
-                for a, row in zip(p, form.integers, strict=True)
-            ]
-            places = [lift.get(u) for u in form.labels]
-            squares = [
-                ((lead, before * hub * hub), (_lifted(row, places, size), lead * unit))
-                for lead, before, row in integer_squares(rest)
-            ]
-            if v == gauge.corner:
-                level = gauge.corner_curvature * top * form.denominator / (hub * hub)
-                last = tuple(int(k == size - 1) for k in range(size))
-                squares.append((level.as_integer_ratio(), (last, 1)))
-            nappes.append(Nappe((_lifted(p, places, size), hub * unit), tuple(squares)))
-        return tuple(nappes)
+        """The exact data of the vertices of all unknowns."""
+        return nappes(self.gauge)
 
     @cached_property
     def newton(self) -> NappeNewton:
@@ -222,15 +133,3 @@ class NappeSystem:
             return x
         weights = np.array([float(self.chart.functional.get(v, 0)) for v in self.gauge.unknowns])
         return np.asarray((x / (x @ weights)[:, None])[:, :-1])
-
-
-def _lifted(
-    row: Sequence[int], places: Sequence[tuple[int, int] | None], size: int
-) -> tuple[int, ...]:
-    """A row over a star as a row on (x, 1), with heights in units; other vertices have height 0."""
-    full = [0] * size
-    for value, placed in zip(row, places, strict=True):
-        if placed is not None:
-            place, height = placed
-            full[place] += height * value
-    return tuple(full)

@@ -42,14 +42,11 @@ def test_vertices_say_that_holes_are_not_looked_at(sheet):
 @pytest.mark.parametrize(
     "command",
     [
-        ("fold",),
-        ("fold", "--way", "1"),
         ("match",),
         ("flat",),
         ("branch", "--signs", "+"),
         ("actuate", "--way", "1"),
         ("assignments",),
-        ("export", "--way", "1", "-o", "-"),
     ],
     ids=" ".join,
 )
@@ -58,6 +55,25 @@ def test_other_commands_refuse_it(sheet, command):
     result = run(name, sheet, *options)
     assert result.exit_code == UNDECIDED
     assert "is not done yet for sheets with holes" in result.stderr
+
+
+def test_fold_follows_what_closes_round_the_hole(sheet, tmp_path):
+    result = run("fold", sheet, "--way", "2", "--until", "60deg", "--frames", "3", "--json")
+    assert result.exit_code == PROVED
+    answer = json.loads(result.stdout)
+    assert (answer["status"], answer["end"]) == ("proved", "angle")
+    words = run("fold", sheet, "--until", "60deg", "--frames", "2").stdout
+    assert "all vertices and holes close exactly at all fold angles" in " ".join(words.split())
+    certified = run("fold", sheet, "--until", "60deg", "--certificate", tmp_path / "c.json")
+    assert certified.exit_code == UNDECIDED
+    assert "no certificate states that panels close round a hole" in certified.stderr
+    assert not (tmp_path / "c.json").exists()
+
+
+def test_view_shows_the_motions_and_no_flat_states(sheet, tmp_path):
+    page = tmp_path / "hole.html"
+    assert run("view", sheet, "--frames", "2", "-o", page).exit_code == PROVED
+    assert "folding flat is not done yet for sheets with holes" in page.read_text()
 
 
 def test_convert_keeps_the_hole(sheet, tmp_path):

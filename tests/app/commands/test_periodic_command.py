@@ -70,13 +70,13 @@ def test_a_cell_is_folded_and_written(tmp_path: Path) -> None:
     assert json.loads(proved.stdout)["status"] == "proved"
     words = run("fold", *given, "--until", "30deg", "--frames", "3").stdout
     assert "2 across 1,2" in words
-    assert "followed in floats" in " ".join(words.split())
+    assert "the frames and the first contact were computed in floats" in " ".join(words.split())
     for arguments, message in (
         (("waterbomb-cell",), "give --direction X,Y"),
         ((*given, "--certificate", tmp_path / "c"), "have no --certificate"),
         ((*given[:3], "--letters", "MV"), "--letters does not go with --direction"),
         ((*given[:3], "--signs", "+-+"), "--signs is for branches"),
-        (("waterbomb-cell", "--patch", "2,2"), "--patch and --prove go with"),
+        (("waterbomb-cell", "--patch", "2,2"), "--patch goes with"),
     ):
         assert message in run("fold", *arguments).stderr
 
@@ -146,7 +146,7 @@ def test_letters_that_do_not_fit_a_cell() -> None:
         (("miura-cell",), "give them with --letters"),
         (("miura-cell", "--letters", "MV"), "for each of the 8 folds"),
         (("miura-cell", "--letters", "MV", "--direction", "1,2"), "for each of the 12 edges"),
-        (("two-vertex", "--direction", "1,2"), "--direction goes with the cell"),
+        (("two-vertex", "--direction", "1,2"), "two-vertex: the cell has no letters"),
     ):
         assert message in run("match", *arguments).stderr
 
@@ -261,6 +261,39 @@ def test_a_drawing_is_taken_for_a_cell_aloud() -> None:
         refused = run("count", *arguments)
         assert refused.exit_code == code
         assert message in " ".join(refused.stderr.split())
+
+
+def test_the_letters_of_a_drawing_are_those_of_its_cell() -> None:
+    """Of Miura's sheet two by two creases repeat with their letters, and one by one without."""
+    result = run("match", "miura", "--periodic", "--cell", "2,1", "--json")
+    assert result.exit_code == PROVED
+    data = json.loads(result.stdout)
+    assert (data["starts"], data["direction"], data["ways"]) == ("proved", None, [2])
+    assert set(data["letters"]) == set("MVU")
+    rolled = run("match", "miura", "--direction", "1,3", "--cell", "4,2", "--letters", "MVMMVM")
+    assert (rolled.exit_code, "way 1 - PROVED" in rolled.stdout) == (PROVED, True)
+    for code, arguments, message in (
+        (3, ("miura", "--periodic", "--cell", "4,2"), "letters do not repeat: fold 7-13 is V"),
+        (2, ("miura", "--cell", "4,2"), "--cell goes with --direction or --periodic"),
+        (2, ("miura", "--periodic", "--direction", "1,2"), "give --direction, or --periodic"),
+        (2, ("miura-cell",), "miura-cell: the cell has no letters"),
+    ):
+        refused = run("match", *arguments)
+        assert refused.exit_code == code
+        assert message in " ".join(refused.stderr.split())
+
+
+def test_a_drawing_rolls_up_as_its_cell(tmp_path: Path) -> None:
+    given = ("miura", "--direction", "1,3", "--cell", "4,2", "--patch", "2,2", "--frames", "3")
+    folded = run("fold", *given, "--until", "10deg", "--json")
+    assert folded.exit_code == PROVED
+    assert json.loads(folded.stdout)["cells"] == [2, 2]
+    page = tmp_path / "miura.html"
+    viewed = run("view", *given, "-o", page)
+    assert viewed.stdout.startswith("1 way to start folding in the direction 1,3 - PROVED")
+    for command in ("fold", "view"):
+        refused = run(command, "miura", "--cell", "4,2", "-o", tmp_path / "out.html")
+        assert (refused.exit_code, "--cell goes with --direction" in refused.stderr) == (2, True)
 
 
 def test_a_drawing_with_several_cells_is_said_to_have_them(tmp_path: Path) -> None:

@@ -126,7 +126,7 @@ ENDS = "import ctypes; ctypes.CDLL(None).exit({code})"
 @pytest.mark.parametrize("code", [0, 1, 4])
 def test_a_library_that_ends_the_process_is_seen(files: Path, tmp_path: Path, code: int) -> None:
     (tmp_path / "numpy.py").write_text(ENDS.format(code=code))
-    done = shell("ulimit -v 4000000; $exactfold count two-vertex", files, FIRST=str(tmp_path))
+    done = shell("ulimit -v 4000000; $exactfold count zigzags", files, FIRST=str(tmp_path))
     assert (done.returncode, done.stdout) == (NO_MEMORY, "")
     assert done.stderr == "exactfold: not enough memory: the program ended without an answer\n"
 
@@ -163,7 +163,7 @@ def test_a_signal_reaches_the_guarded_program(
     files: Path, tmp_path: Path, number: int, code: int, said: str
 ) -> None:
     (tmp_path / "numpy.py").write_text("open('begun', 'w').close()\nimport time\ntime.sleep(60)")
-    command = f"ulimit -v 4000000; exec {sys.executable} -m exactfold count two-vertex"
+    command = f"ulimit -v 4000000; exec {sys.executable} -m exactfold count zigzags"
     started = subprocess.Popen(
         command,
         shell=True,
@@ -189,7 +189,7 @@ def test_an_interruption_while_modules_load_has_no_traceback(
     files: Path, tmp_path: Path, module: str
 ) -> None:
     (tmp_path / f"{module}.py").write_text(SIGNALS)
-    done = shell("$exactfold count two-vertex", files, FIRST=str(tmp_path))
+    done = shell("$exactfold count zigzags", files, FIRST=str(tmp_path))
     assert (done.returncode, done.stdout) == (INTERRUPTED, "")
     assert done.stderr == "exactfold: interrupted\n"
 

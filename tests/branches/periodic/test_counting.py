@@ -10,6 +10,7 @@ import pytest
 from exactfold import PROVED, checker
 from exactfold.branches import AlgebraicLine, HeightSpace, count_periodic, periodic_certificate
 from exactfold.branches.periodic import counting
+from exactfold.branches.periodic.lines import QuadraticLine
 from exactfold.branches.periodic.spaces import Spaces
 from exactfold.checker.sheets.cell import CellForms
 from exactfold.checker.sheets.cell import read_cell as read_checked
@@ -97,6 +98,15 @@ def test_folds_in_line_at_a_vertex_with_four_folds_are_flat_on_half_of_the_branc
     assert [b["letters"] for b in claims["branches"]] == [b.letters for b in result]
 
 
+def test_letters_that_a_factor_shows_are_those_of_the_certificate() -> None:
+    """Across 0,1 the forms of the waterbomb's vertices with six folds are products."""
+    result = count_periodic("waterbomb-cell", (0, 1))
+    claims = checker.check(periodic_certificate(result))
+    letters = ["UMUFMFVVV", "UVUMMMFVF", "MFMFFFFFF"]  # those of the boxes
+    assert [b["letters"] for b in claims["branches"]] == letters
+    assert [b.letters for b in result] == ["FMFFMFVVV", "FVFMMMFVF", "MFMFFFFFF"]
+
+
 def test_a_vertex_of_degree_three_is_flat_on_every_branch() -> None:
     cell = random_cell(4, 14, 16)
     assert [cell.degree(v) for v in range(4)] == [6, 9, 3, 6]
@@ -121,6 +131,29 @@ def test_parallel_loops_at_two_vertices_make_a_pleat() -> None:
     assert across.families[0].dimension == 2
 
 
+@pytest.mark.parametrize(
+    ("vertices", "seed", "flips", "expected"),
+    [
+        # All heights that are flat at the vertex with four folds are solutions.
+        (3, 461, 3, (0, [1], [2])),
+        # A plane of pleats, and two isolated solutions.
+        (5, 891, 5, (2, [2], [])),
+        # A line of a family is flat at three vertices; beside the family a form is a square.
+        (5, 649, 5, (0, [1], [2])),
+        (5, 844, 0, (0, [1], [2])),
+    ],
+)
+def test_spaces_of_random_cells(
+    vertices: int, seed: int, flips: int, expected: tuple[int, list[int], list[int]]
+) -> None:
+    result = count_periodic(random_cell(vertices, seed, 64, flips=flips), (1, 0))
+    assert result.status is PROVED
+    pleats, families = ([s.dimension for s in x] for x in (result.pleats, result.families))
+    assert (result.distinct, pleats, families) == expected
+    claims = checker.check(periodic_certificate(result))
+    assert [s["dimension"] for s in claims["families"]] == families
+
+
 def test_pleats_do_not_depend_on_the_direction() -> None:
     known = {frozenset(count_periodic("miura-cell", n).pleats) for n in ((3, 4), (1, 0), (0, 1))}
     assert len(known) == 1
@@ -134,7 +167,24 @@ def test_the_pleats_of_a_square_twist_are_over_the_field_of_root_five() -> None:
         assert (b * b - 4 * a * c) % 5 == 0
         square = Fraction(b * b - 4 * a * c, 5)
         assert int(square**0.5) ** 2 == square
-    with pytest.raises(NotApplicableError, match="Groebner"):
+    claims = checker.check(periodic_certificate(result))
+    assert [line["radicand"] for line in claims["lines"]] == [5, 5]
+    assert claims["pleats"] == []
+
+
+def test_rational_solutions_that_are_not_guessed_from_floats_are_in_the_certificate() -> None:
+    result = count_periodic(random_cell(4, 21, 8, flips=21), (1, 0))
+    assert "Groebner" in result.reason
+    claims = checker.check(periodic_certificate(result))
+    assert (claims["distinct"], claims["with_multiplicity"]) == (5, 6)
+    assert len(claims["pleats"]) == 1
+
+
+def test_no_certificate_states_a_pleat_in_a_larger_field(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(QuadraticLine, "of", lambda ray: None)
+    result = count_periodic("square-twist-cell", (1, 2))
+    assert result.status is PROVED
+    with pytest.raises(NotApplicableError, match="in no quadratic field"):
         periodic_certificate(result)
 
 

@@ -20,7 +20,7 @@ def periodic_file(name: str) -> Document:
     return given(f"periodic-{name}")
 
 
-@pytest.mark.parametrize("name", ["pleat", "family", "flat", "triangle", "waterbomb"])
+@pytest.mark.parametrize("name", ["pleat", "family", "flat", "line", "triangle", "waterbomb"])
 def test_true_certificates_verify(name: str) -> None:
     document = periodic_file(name)
     assert verified(document) == document["claims"]
@@ -237,6 +237,80 @@ def test_a_line_inside_a_larger_space() -> None:
     basis = [a for a in wide["basis"] if a[-1] != "0"]
     spaces(document).append({"basis": basis, "points": basis})
     false(document, "a point of a space lies in a larger one")
+
+
+# --- lines over quadratic fields ------------------------------------------------------------------
+
+
+def lines(document: Document) -> list[Document]:
+    found: list[Document] = document["evidence"]["lines"]
+    return found
+
+
+def with_line(name: str, radicand: int, point: list[list[str]]) -> Document:
+    """A certificate of the first version, with one line more."""
+    document = periodic_file(name)
+    document["version"] = 2
+    document["claims"]["lines"] = []
+    document["evidence"]["lines"] = [{"radicand": radicand, "point": point}]
+    return document
+
+
+def test_a_line_over_a_square_is_two_points() -> None:
+    """With sqrt 4 = 2 the point and its conjugate are two pleats, one of which is listed, too."""
+    point = [["1", "0"], ["1/2", "1/4"], ["1/2", "-1/4"], ["0", "0"]]
+    document = with_line("pleat", 4, point)
+    false(document, "a radicand is a square")
+
+
+def test_a_rational_line_is_a_space_again() -> None:
+    document = with_line("pleat", 5, [["1", "0"], ["1", "0"], ["0", "0"], ["0", "0"]])
+    false(document, "a line is rational")
+
+
+def test_a_line_that_is_listed_twice_would_be_two_pleats() -> None:
+    document = periodic_file("line")
+    lines(document).append(lines(document)[0])
+    false(document, "a line is listed twice")
+
+
+def test_a_line_with_another_factor_would_be_another_pleat() -> None:
+    document = periodic_file("line")
+    scaled = [[str(2 * Fraction(x)) for x in pair] for pair in lines(document)[0]["point"]]
+    lines(document).append({"radicand": 5, "point": scaled})
+    false(document, "the first entry of a line that is not 0 is not 1")
+
+
+def test_a_line_that_is_no_solution() -> None:
+    document = periodic_file("line")
+    lines(document)[0]["point"][2] = ["-27/5", "5/2"]
+    false(document, "a form does not vanish on a line")
+
+
+def test_a_line_of_a_family_would_be_a_branch_of_its_own() -> None:
+    document = with_line("family", 2, [["0", "0"], ["1", "0"], ["1", "0"], ["0", "1"]])
+    false(document, "a line lies in a larger space of solutions")
+
+
+def test_a_line_without_which_signs_are_open() -> None:
+    document = periodic_file("line")
+    lines(document).pop()
+    false(document, "1 pairs of opposite sign vectors are not covered")
+
+
+def test_what_a_line_is() -> None:
+    for change, message in (
+        (lambda d: lines(d)[0]["point"].pop(), "point does not have 4 entries"),
+        (lambda d: lines(d)[0]["point"][1].pop(), "number does not have 2 entries"),
+        (lambda d: lines(d)[0].update(more=1), "line: expected an object with the keys"),
+        (lambda d: d.update(version=1), "expected an object with the keys"),
+        (lambda d: d["claims"].pop("lines"), "expected an object with the keys"),
+        (lambda d: d["claims"].update(lines=[]), "the claim 'lines' is not what"),
+    ):
+        document = periodic_file("line")
+        change(document)
+        with pytest.raises(Exception, match=message):
+            verified(document)
 
 
 # --- claims ---------------------------------------------------------------------------------------

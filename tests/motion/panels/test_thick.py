@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 from math import atan, cos, degrees, pi, radians, sin, tan
@@ -131,9 +132,43 @@ def test_two_plates_that_only_meet_by_a_wrong_claim():
     assert thick.crossed(motion.duration - 1e-6) is None
 
 
-def test_plates_of_a_sheet_of_triangles_are_refused():
-    with pytest.raises(UsageError, match="thickness is for ways of rigid panels"):
-        exactfold.follow("two-vertex", signs="+-", solid=solid())
+@pytest.mark.parametrize("side", [1, -1])
+def test_plates_along_a_branch_fold_as_the_sheet_does(side):
+    """Against the motion along the branch, when its fold has the angle at which plates meet."""
+    plates = Solid(Fraction(1, 1000), "middle", Fraction(1, 1000))
+    thick = exactfold.follow("two-vertex", signs="+-", side=side, solid=plates)
+    assert (thick.name, thick.end, thick.status) == (
+        "branch " + ("+-" if side > 0 else "-+"),
+        "contact",
+        exactfold.UNDECIDED,
+    )
+    assert thick.events[-1].folds == ((3, 5),)
+    limit = plates.limit("V")
+    assert abs(thick.angles[-1]).max() == pytest.approx(limit, abs=1e-6)
+    thin = exactfold.follow(
+        "two-vertex", signs="+-", side=side, until=f"{math.degrees(limit)}deg", held=(2, 3, 5)
+    )
+    assert thick.angles[-1] == pytest.approx(thin.angles[-1], abs=1e-6)
+    assert thick.pinned == (2, 3, 5)
+    assert thick.coords[-1] == pytest.approx(thin.coords[-1], abs=1e-5)
+    assert thick.to_dict()["plates"]["thickness"] == "1/1000"
+
+
+@pytest.mark.parametrize(
+    ("sheet", "options", "words"),
+    [
+        ("waterbomb", {}, "thickness along a branch is followed on sheets with four corners"),
+        ("two-vertex", {"by": (3, 5)}, "by does not go with thickness along a branch"),
+        ("two-vertex", {"through_branch_points": True}, "going on through branch points does not"),
+        ("two-vertex", {"until": "return"}, "until"),
+    ],
+)
+def test_what_plates_along_a_branch_refuse(sheet, options, words):
+    with pytest.raises(UsageError, match=words):
+        exactfold.follow(sheet, solid=solid(), **options)
+
+
+def test_plates_that_are_stuck_are_refused():
     with pytest.raises(StuckPlatesError, match="the flat sheet is stuck"):
         follow_panels(miura(2, 2), solid=solid(trim=Fraction(0)))
 

@@ -98,7 +98,9 @@ def test_five_cells_of_the_resch_pattern_close_to_a_ring() -> None:
 
 def test_the_planar_fold_of_miura_is_no_branch_but_its_rolling_ways_are() -> None:
     motion = rolled("miura-cell", 5)
-    assert motion.reason == "followed in floats"  # (H) does not hold
+    assert (
+        motion.reason == "the frames and the first contact were computed in floats"
+    )  # (H) does not hold
     assert motion.at(motion.duration / 2).shape == motion.coords[0].shape
 
 

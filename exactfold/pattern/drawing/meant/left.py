@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import exp, inf, lcm, log, pi
+from itertools import combinations
+from math import atan2, cos, exp, hypot, inf, lcm, log, pi, sin
 from typing import TYPE_CHECKING, Final, Protocol
 
 from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
@@ -27,6 +28,10 @@ _ROUGH: Final = 1e-6
 _STEPS: Final = 30
 """Points on a grid of so many steps across the sheet are not rounded; no relation there misses by
 less than 1e-3."""
+_SMALL: Final = 16
+"""On sheets of so many vertices plain floats look first, as NumPy takes longer to load."""
+_FURTHER: Final = 1.01
+"""Plain floats and arrays agree about what is this many times further off than `NEAREST`."""
 _TRUST: Final = 1e-9
 """Angles from floats are good to this; smaller defects are computed exactly. All are if positions
 are only enclosed: then the angles are those of exact directions."""
@@ -66,9 +71,9 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     >>> [(near.name, round(near.defect, 14)) for near in left_relations(rounded)]
     [('kawasaki@4', 4.2e-13), ('straight@4:0-2', 7.1e-13)]
     """
-    if _is_on_a_grid(sheet):
+    if _is_on_a_grid(sheet) or (len(sheet.vertices) <= _SMALL and _has_none(sheet)):
         return ()
-    import numpy as np  # here, as sheets on a grid do without
+    import numpy as np  # here, as most small sheets do without
 
     places = np.array(_places(sheet))
     size = float(np.ptp(places, axis=0).max())
@@ -227,6 +232,51 @@ def _is_on_a_grid(sheet: Sheet) -> bool:
         if not 0 < common <= 10**6:
             return False
     return all(common * (max(column) - min(column)) <= _STEPS for column in columns)
+
+
+def _has_none(sheet: Sheet) -> bool:
+    """Whether no relation of a small sheet is near without being exact, one relation at a time.
+
+    False if it is open: then `_tests` look at all of them again.
+    """
+    if hasattr(sheet, "directions"):
+        return False
+    try:
+        places = [(float(x), float(y)) for x, y in sheet.vertices]
+    except OverflowError:
+        return False
+    size = max(max(column) - min(column) for column in zip(*places, strict=True))
+    for kind, v, ends in _relations(sheet):
+        (x, y), points = places[v], [places[w] for w in ends]
+        angles = {w: atan2(b - y, a - x) for w, (a, b) in zip(ends, points, strict=True)}
+        in_turn = sorted(ends, key=angles.__getitem__) if kind == "kawasaki" else ends
+        total = sum(angles[w] * (-1) ** k for k, w in enumerate(in_turn))
+        off = abs(atan2(sin(total), abs(cos(total))))
+        if kind != "kawasaki" and cos(total) > 0:
+            off = pi / 2
+        shortest = min(hypot(a - x, b - y) for a, b in points)
+        if off * shortest < _FURTHER * NEAREST * size:
+            terms = tuple((_edge(v, w), (-1) ** k) for k, w in enumerate(in_turn))
+            if off > _TRUST or not shortest or _exact(sheet.vertices, {}, terms):
+                return False
+    return True
+
+
+def _relations(sheet: Sheet) -> Iterator[tuple[Kind, int, list[int]]]:
+    """The kind, the vertex and the other ends of every relation that `_tests` look for."""
+    rim = set(sheet.boundary_edges)
+    border: dict[int, list[int]] = {}
+    inner: dict[int, list[int]] = {}
+    for edge in sheet.edges:
+        for v, w in (edge, edge[::-1]):
+            (border if edge in rim else inner).setdefault(v, []).append(w)
+    yield from (("border", v, ends) for v, ends in border.items() if len(ends) == 2)
+    for v, ends in inner.items():
+        if v in border:
+            continue
+        yield from (("straight", v, list(pair)) for pair in combinations(ends, 2))
+        if len(ends) >= 4 and len(ends) % 2 == 0:
+            yield "kawasaki", v, ends
 
 
 def _tests(sheet: Sheet, places: FloatArray) -> Iterator[_Tests]:

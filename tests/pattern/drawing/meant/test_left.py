@@ -8,6 +8,7 @@ import pytest
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.data import EXAMPLES
 from exactfold.pattern.degenerate import DEGENERATE
+from exactfold.pattern.drawing.meant import left
 from exactfold.pattern.drawing.meant.left import left_relations
 from exactfold.pattern.loading import open_sheet
 from exactfold.pattern.opening import panels
@@ -116,3 +117,21 @@ def test_noise_of_a_thousandth_of_the_size_is_seen():
     assert straight == {
         f"straight@{4 * i + j}:{4 * i + j - 4}-{4 * i + j + 4}" for i in (1, 2) for j in (1, 2)
     }
+
+
+NEAR = {
+    "straight": CreasePattern([*KITE, ("0.50000001", "0.49999999")], FAN),
+    "border": CreasePattern([(0, 0), (1, "-1e-12"), (2, 0), (1, 1)], [(0, 1, 3), (1, 2, 3)]),
+    "too short": CreasePattern([*KITE, (Fraction(1, 10**400), Fraction(1, 10**400))], FAN),
+    "none": CreasePattern([*KITE, ("0.41", "0.57")], FAN),
+    "chance": CreasePattern([*KITE, ("0.33", "0.34")], FAN),
+}
+
+
+@pytest.mark.parametrize("name", NEAR)
+def test_plain_floats_and_arrays_find_the_same(monkeypatch, name):
+    known = left_relations(NEAR[name])
+    monkeypatch.setattr(left, "_SMALL", 0)
+    sheet = NEAR[name]
+    assert left_relations(CreasePattern(sheet.vertices, sheet.triangles)) == known
+    assert bool(known) == (name in ("straight", "border"))
