@@ -246,7 +246,8 @@ class Splitting(LimitedSearch):
             elif len({sign(d) for d, _ in form}) == 1:
                 self.sums = self.sums or len(form) > 1
                 known.add(v)
-                smaller = self._imposed(_Space(space.rows, forms, space.users), [row for _, row in form])
+                here = _Space(space.rows, forms, space.users)
+                smaller = self._imposed(here, [row for _, row in form])
                 if smaller is None:
                     return None
                 space = smaller
