@@ -101,5 +101,5 @@ class Climb:
                 break
         if last is None or last.off > 10 * _REACHED:
             return None
-        sheet = next(rational_sheets(self.equations, last.x, self.digits), None)
-        return None if sheet is None else (sheet, last.x)
+        found = next(rational_sheets(self.equations, last.x, self.digits), None)
+        return None if found is None else (found[0], last.x)

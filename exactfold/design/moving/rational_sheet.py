@@ -36,18 +36,21 @@ _SMALL = 1e-7
 """Singular values below this share of the largest count as 0."""
 _OFF = 0.05
 """An exact sheet is this close to what floats propose, as a share of the box."""
+_LONGEST = 2000
+"""Slopes with more bits are given up: in a mesh of many loops each is several times as long as
+those before."""
 _ORDERS = 12
 """So many choices of the slopes that are solved for are tried."""
 
 
 def rational_sheets(
     equations: Equations, x: FloatArray, several: Sequence[int]
-) -> Iterator[PanelPattern]:
+) -> Iterator[tuple[PanelPattern, bool]]:
     """Exact sheets near the solution x, for each number of digits; none where no way leads there.
 
-    If slopes solve the equations on all sheets nearby, places are only rounded. Otherwise each
-    sheet has rational slopes that satisfy all equations exactly. It has the panels of the given
-    sheet.
+    If slopes solve the equations on all sheets nearby, places are only rounded. Otherwise a sheet
+    has rational slopes that satisfy all equations exactly, and True beside it: this proves that it
+    starts to fold with the letters to second order. It has the panels of the given sheet.
     """
     by_slopes = equations.closing(x)[1][:, equations.moves.shape[1] :]
     sizes = np.linalg.svd(by_slopes, compute_uv=False)
@@ -55,11 +58,11 @@ def rational_sheets(
         for digits in several:
             rounded = nearest_sheet(equations, x, digits)
             if rounded is not None:
-                yield rounded
+                yield rounded, False
     for digits in several:
         made = _Making(equations, x, digits).sheet()
         if made is not None:
-            yield made
+            yield made, True
 
 
 def nearest_sheet(equations: Equations, x: FloatArray, digits: int) -> PanelPattern | None:
@@ -102,6 +105,8 @@ class _Making:
         k = equations.moves.shape[1]
         self.p, self.q = x[:k], x[k:]
         self.folds, self.vertices = self._representatives()
+        self.maps = [(one, self._panels(one.vertices)) for one in self.places.symmetries]
+        self.held = False
 
     def _representatives(self) -> tuple[list[int], list[int]]:
         """One fold and one vertex of each set of symmetric ones."""
@@ -123,6 +128,7 @@ class _Making:
         if first is None:
             return None
         early, before, after = first
+        self.held = bool(before)
         unit = self.places.unit
         shares = [unit * _rounded(share, self.digits) for share in self.p]
         points = self.places.at([s if k in early else Fraction(0) for k, s in enumerate(shares)])
@@ -184,22 +190,13 @@ class _Making:
         if columns is None:
             return None
         slopes = combined(self.slopes.number, columns, shares)
-        held: set[int] = set()
-        if self.equations.loops:
-            if before:
-                return None
-            reflected = self._reflected(slopes)
-            if reflected is None:
-                return None
-            slopes = reflected
-            held = {f for v in self.equations.loops for f in self.slopes.around[v]}
-        rest = [v for v in self.vertices if v not in self.equations.loops]
-        if not rest:
-            return slopes
-        usable = [
-            column for column in self._movable(points, before) if not held.intersection(column)
-        ]
-        return self._with_areas(slopes, rest, usable)
+        if before and self.equations.loops:
+            return None
+        order, core = self._peeled(slopes)
+        if core and set(self.equations.loops).intersection(core):
+            return None
+        solved = self._with_areas(slopes, core, self._movable(points, before)) if core else slopes
+        return solved and self._in_order(solved, order)
 
     def _basis(
         self, points: Sequence[Vector], before: Sequence[int]
@@ -257,43 +254,61 @@ class _Making:
             found += self._kept(two, points, before)
         return found
 
-    def _reflected(self, slopes: list[Vector]) -> list[Vector] | None:
-        """Slopes with constant gains at all loops: panel after panel is the image of the one
-        opposite, in the bisector of the two between.
+    def _peeled(self, slopes: Sequence[Vector]) -> tuple[list[tuple[int, int]], list[int]]:
+        """Vertices, each with a panel that no later vertex uses, and the vertices that are left.
+
+        If some positions are rounded first, all vertices are left.
         """
-        slopes = list(slopes)
-        maps = [(one, self._panels(one.vertices)) for one in self.places.symmetries]
-        left = set(self.equations.loops)
+        left = set(self.slopes.around) & {*self.equations.vertices}
         order: list[tuple[int, int]] = []
+        if self.held:
+            return order, self.vertices
         while left:
             uses: dict[int, int] = {}
             for v in left:
                 for f in self.slopes.around[v]:
                     uses[f] = uses.get(f, 0) + 1
-            found = next(
-                (
-                    (v, f)
-                    for v in sorted(left)
-                    for f in self.slopes.around[v]
-                    if uses[f] == 1
-                    and not {image[f] for _, image in maps} & set(self.slopes.around[v]) - {f}
-                ),
-                None,
-            )
+            found: tuple[Fraction, int, int] | None = None
+            for v in sorted(left):
+                around = self.slopes.around[v]
+                for k, f in enumerate(around):
+                    alike = {image[f] for _, image in self.maps} & set(around)
+                    if uses[f] == 1 and not alike - {f}:
+                        d = minus(slopes[around[(k + 1) % len(around)]], slopes[around[k - 1]])
+                        if found is None or dot(d, d) > found[0]:
+                            found = dot(d, d), v, f
             if found is None:
-                return None
-            order.append(found)
-            left -= {found[0]} | {one.vertices[found[0]] for one, _ in maps}
+                break
+            order.append(found[1:])
+            left -= {found[1]} | {one.vertices[found[1]] for one, _ in self.maps}
+        return order, [v for v in self.vertices if v in left]
+
+    def _in_order(
+        self, slopes: Sequence[Vector], order: Sequence[tuple[int, int]]
+    ) -> list[Vector] | None:
+        """Slopes that satisfy the equations of the vertices, the last first, by their panels.
+
+        At a loop the panel becomes the mirror image of the one opposite, in the bisector of the two
+        between. Elsewhere it moves as little as possible.
+        """
+        slopes = list(slopes)
         for v, f in reversed(order):
             around = self.slopes.around[v]
             k = around.index(f)
-            a, b, far = (slopes[around[(k + step) % 4]] for step in (1, 3, 2))
+            a, b = slopes[around[k - 1]], slopes[around[(k + 1) % len(around)]]
             d = minus(b, a)
             if not dot(d, d):
                 return None
-            twice = 2 * dot(minus(far, a), d) / dot(d, d) - 1
-            slopes[f] = far[0] - twice * d[0], far[1] - twice * d[1]
-            for one, image in maps:
+            if v in self.equations.loops:
+                far = slopes[around[(k + 2) % 4]]
+                twice = 2 * dot(minus(far, a), d) / dot(d, d) - 1
+                slopes[f] = far[0] - twice * d[0], far[1] - twice * d[1]
+            else:
+                share = area(around, slopes) / dot(d, d)
+                slopes[f] = slopes[f][0] - share * d[1], slopes[f][1] + share * d[0]
+            if max(c.denominator.bit_length() for c in slopes[f]) > _LONGEST:
+                return None
+            for one, image in self.maps:
                 x, y = one.applied(slopes[f])
                 slopes[image[f]] = one.turns * x, one.turns * y
         return slopes

@@ -170,8 +170,8 @@ def squared_length(curve: Sequence[Row]) -> list[int]:
     [5, -6, 13, 0, 1]
     """
     count = 2 * len(curve) - 1
-    longest = max(abs(x).bit_length() for row in curve for x in row)
-    bits = _whole_bytes(2 * longest + (len(curve) * len(curve[0])).bit_length() + 2)
+    largest = max(max(map(max, curve)), -min(map(min, curve)))
+    bits = _whole_bytes(2 * largest.bit_length() + (len(curve) * len(curve[0])).bit_length() + 2)
     total = 0
     for column in zip(*curve, strict=True):
         packed = 0

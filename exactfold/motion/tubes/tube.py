@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import isqrt
+from operator import mul
 
 import numpy as np
 
@@ -147,17 +148,10 @@ class Tube(Piece):
     def _speeds(self) -> Row:
         """Upper bounds of |p_i'(s)| on the whole tube, over 2^bits."""
         reach, k = self.reach, len(self.coefficients) - 1
+        powers = [m * reach ** (m - 1) << REACH_BITS * (k - m) for m in range(1, k + 1)]
         return tuple(
-            1
-            + up(
-                sum(
-                    m * abs(row[i]) * reach ** (m - 1) << REACH_BITS * (k - m)
-                    for m, row in enumerate(self.coefficients)
-                    if m
-                ),
-                REACH_BITS * (k - 1),
-            )
-            for i in range(len(self.row))
+            1 + up(sum(map(mul, map(abs, column), powers)), REACH_BITS * (k - 1))
+            for column in zip(*self.coefficients[1:], strict=True)
         )
 
 

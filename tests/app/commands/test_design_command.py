@@ -71,3 +71,40 @@ def test_what_is_refused(options, words):
     result = run("design", "two-vertex", *options)
     assert result.exit_code == USAGE
     assert words in result.stderr
+
+
+def test_panels_are_written_with_their_letters_and_read_again(tmp_path):
+    path = tmp_path / "new.fold"
+    result = run("design", "map-fold", "--letters", "drawn", "-o", path, "--json")
+    data = json.loads(result.stdout)
+    Draft202012Validator(exactfold.schema("design")).validate(data)
+    assert result.exit_code == PROVED
+    assert (data["goal"], data["before"], data["after"]) == ("letters", None, None)
+    assert data["largest_move"] > 0
+    again = exactfold.read(path)
+    assert {str(x) for x, _ in again.sheet.vertices} == {x for x, _ in data["pattern"]["vertices"]}
+    assert run("match", path).exit_code == PROVED
+    same = run("design", path, "--letters", "drawn", "--symmetric", "--border", "free")
+    assert "PROVED" in same.stdout
+    assert "moved" not in same.stdout
+
+
+def test_a_way_of_panels_gives_its_letters():
+    result = run("design", "miura", "--way", 1)
+    assert result.exit_code == PROVED
+    assert result.stdout.startswith("status  PROVED (true motions of the panels begin")
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        ([], USAGE, "give --letters"),
+        (["--way", 99], USAGE, "there is no way 99"),
+        (["--letters", "drawn", "--border", "none"], USAGE, "none of along, free"),
+        (["--letters", "drawn", "--maximise", "stroke"], UNDECIDED, "letters, alone or with"),
+    ],
+)
+def test_what_is_refused_of_panels(options, code, words):
+    result = run("design", "miura", *options)
+    assert result.exit_code == code
+    assert words in result.stderr

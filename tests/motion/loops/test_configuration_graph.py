@@ -280,6 +280,11 @@ def test_extreme_angles_and_turns_agree_with_floats():
     assert any(fold.least[1] < -1 for fold in found.folds)
 
 
+def test_every_proved_loop_of_a_sheet_has_its_angles():
+    found = find_loops(random_square(3, seed=9901))
+    assert [len(loop.folds) for loop in found.loops] == [10] * 4
+
+
 def test_at_every_vertex_an_even_number_of_folds_wind():
     """The product of the half-turn quaternions around a vertex is 1: docs/matching.md."""
     for v in SHEET.interior:
