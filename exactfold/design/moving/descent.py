@@ -37,7 +37,7 @@ def descended(
     >>> def right(x):
     ...     return x[:1] - 0.5, np.array([[1.0, 0.0]])
     >>> *_, last = descended(circle, right, np.array([-1.0, 2.0]), 0, 0.0, 50)
-    >>> last.off < 1e-9, last.x[0] > 0.49
+    >>> last.off < 1e-9, bool(last.x[0] > 0.49)
     (True, True)
     """
     x, damping = start, 1e-2

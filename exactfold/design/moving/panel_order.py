@@ -102,6 +102,8 @@ class _PanelSearch:
         self.within = self.places.width / 10 if within is None else float(within)
         self.interrupted = False
         self.steps = 0
+        self.best: tuple[Equations, Attempt] | None = None
+        self.to_second_order: PanelPattern | None = None
 
     def found(self) -> Designed:
         """The result: the sheet with a proof, or the closest one with a reason."""
@@ -110,41 +112,53 @@ class _PanelSearch:
         matched = self._match(self.pattern)
         if matched.truly is PROVED:
             return self._result(self.pattern, PROVED, _BEGINS)
-        to_second_order: PanelPattern | None = None
-        best: tuple[Equations, Attempt] | None = None
-        for loops in self._plans():
-            equations = Equations(self.slopes, self.within, loops)
-            for last in self._attempts(equations):
-                if best is None or last.off < best[1].off:
-                    best = equations, last
-                if last.off > _REACHED or self.interrupted:
-                    continue
-                for sheet, exact in rational_sheets(equations, last.x, _DIGITS):
-                    answer = self._match(sheet)
-                    if answer.truly is PROVED:
-                        return self._result(sheet, PROVED, _BEGINS)
-                    if exact or answer.starts is PROVED:
-                        to_second_order = to_second_order or sheet
-                        break
-            if self.interrupted or self.clock.passed:
-                break
+        try:
+            if (reached := self._searched()) is not None:
+                return self._result(reached, PROVED, _BEGINS)
+        except KeyboardInterrupt:
+            self.interrupted = True
+        to_second_order, best = self.to_second_order, self.best
         if to_second_order is not None:
             return self._result(
                 to_second_order,
                 UNDECIDED,
                 "the sheet starts to fold with the letters to second order only: none was found on "
-                "which true motions of the panels are proved to begin like this",
+                f"which true motions of the panels are proved to begin like this{self._why_ended}",
             )
         if matched.starts is PROVED:
             return self._result(
                 self.pattern,
                 UNDECIDED,
                 "the given sheet starts to fold with the letters to second order, and none was "
-                "found on which true motions of the panels are proved to begin like this",
+                "found on which true motions of the panels are proved to begin like this"
+                f"{self._why_ended}",
             )
         if best is None:
-            return self._result(self.pattern, UNDECIDED, f"no sheet was tried ({self._stopped})")
+            why = self._stopped or "no letters close to first order in floats"
+            return self._result(self.pattern, UNDECIDED, f"no sheet was tried ({why})")
         return self._closest(*best)
+
+    def _searched(self) -> PanelPattern | None:
+        """A sheet that truly folds with the letters; the best others are kept."""
+        for loops in self._plans():
+            equations = Equations(self.slopes, self.within, loops)
+            for last in self._attempts(equations):
+                if self.best is None or last.off < self.best[1].off:
+                    self.best = equations, last
+                if self.interrupted:
+                    return None
+                if last.off > _REACHED:
+                    continue
+                for sheet, exact in rational_sheets(equations, last.x, _DIGITS):
+                    answer = self._match(sheet)
+                    if answer.truly is PROVED:
+                        return sheet
+                    if exact or answer.starts is PROVED:
+                        self.to_second_order = self.to_second_order or sheet
+                        break
+            if self.clock.passed:
+                return None
+        return None
 
     def with_margin(self, first: Designed) -> Designed:
         """The sheet with the largest margin that is found, from one with the letters on."""
@@ -253,6 +267,10 @@ class _PanelSearch:
         if self.interrupted:
             return "the search was interrupted"
         return "the time is over" if self.clock.passed else ""
+
+    @property
+    def _why_ended(self) -> str:
+        return f" ({self._stopped})" if self._stopped else ""
 
     def _walled(self, equations: Equations, x: FloatArray) -> str:
         """What keeps the vertices from moving on."""

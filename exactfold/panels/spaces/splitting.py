@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from heapq import heappop, heappush
 from typing import Final
 
 from flint import fmpq
@@ -45,11 +47,23 @@ _FIRST_TURN: Final = 100_000
 class _Space:
     """The densities as functions of parameters, each of which is the density of one fold.
 
-    `forms` has those forms of vertices that are known on this space.
+    `forms` has those forms of vertices that are known on this space. `users` has the folds whose
+    density depends on each parameter; they are found when they are first asked for.
     """
 
     rows: Mapping[Edge, Row]
     forms: Mapping[int, Form]
+    found: Mapping[int, frozenset[Edge]] | None = None
+
+    @cached_property
+    def users(self) -> Mapping[int, frozenset[Edge]]:
+        if self.found is not None:
+            return self.found
+        users: dict[int, list[Edge]] = {}
+        for edge, row in self.rows.items():
+            for k in row:
+                users.setdefault(k, []).append(edge)
+        return {k: frozenset(edges) for k, edges in users.items()}
 
     @property
     def parameters(self) -> list[int]:
@@ -219,56 +233,63 @@ class Splitting(LimitedSearch):
         remain. None if a kept factor vanishes.
         """
         known = set(settled)
+        split: dict[int, bool] = {}
+        waiting = sorted({v for edge in space.rows for v in self._touched(edge)} - known)
         forms = dict(space.forms)
-        space = _Space(space.rows, forms)
-        while True:
-            products: list[int] = []
-            left: list[int] = []
-            for v in sorted({v for edge in space.rows for v in self._touched(edge)} - known):
-                if v not in forms:
-                    forms[v] = self._form(v, space.rows)
-                form = forms[v]
-                if not form:
-                    known.add(v)
-                elif len({sign(d) for d, _ in form}) == 1:
-                    self.sums = self.sums or len(form) > 1
-                    known.add(v)
-                    smaller = self._imposed(space, [row for _, row in form])
-                    if smaller is None:
-                        return None
-                    space, forms = smaller, dict(smaller.forms)
-                    space = _Space(space.rows, forms)
-                    break
-                else:
-                    (products if len(form) == 2 else left).append(v)
+        while waiting:
+            v = heappop(waiting)
+            if v not in forms:
+                forms[v] = self._form(v, space.rows)
+            form = forms[v]
+            if not form:
+                known.add(v)
+            elif len({sign(d) for d, _ in form}) == 1:
+                self.sums = self.sums or len(form) > 1
+                known.add(v)
+                here = _Space(space.rows, forms, space.users)
+                smaller = self._imposed(here, [row for _, row in form])
+                if smaller is None:
+                    return None
+                space = smaller
+                for u in forms.keys() - space.forms.keys() - known:
+                    split.pop(u, None)
+                    heappush(waiting, u)
+                forms = dict(space.forms)
             else:
-                return space, frozenset(known), products, left
+                split[v] = len(form) == 2
+        products = sorted(v for v, both in split.items() if both)
+        left = sorted(v for v, both in split.items() if not both)
+        return _Space(space.rows, forms, space.users), frozenset(known), products, left
 
     def _imposed(self, space: _Space, functionals: Sequence[Row]) -> _Space | None:
         """The subspace on which linear functions vanish; None if a kept row vanishes on it."""
-        rows = dict(space.rows)
+        rows, users = dict(space.rows), dict(space.users)
         changed: set[Edge] = set()
         waiting = list(functionals)
+        nobody: frozenset[Edge] = frozenset()
         while waiting:
             functional = waiting.pop(0)
             if not functional:
                 continue
-            pivot = min(functional, key=lambda k: (sum(k in row for row in rows.values()), k))
+            pivot = min(functional, key=lambda k: (len(users.get(k, nobody)), k))
             scale = functional[pivot]
             solved = {k: plain(-x / scale) for k, x in functional.items() if k != pivot}
-            for edge in [edge for edge, row in rows.items() if pivot in row]:
-                row = without(rows[edge], pivot, solved)
-                self.work += len(solved)
-                changed.add(edge)
-                if row:
-                    rows[edge] = row
-                elif is_kept(edge):
-                    return None
-                else:
+            using = users.pop(pivot, nobody)
+            changed |= using
+            self.work += len(solved) * len(using)
+            for edge in using:
+                rows[edge] = without(rows[edge], pivot, solved)
+                if not rows[edge]:
+                    if is_kept(edge):
+                        return None
                     del rows[edge]
+            for k in solved:
+                gone = {edge for edge in using if k not in rows.get(edge, {})}
+                users[k] = (users.get(k, nobody) | using) - gone
             waiting = [without(f, pivot, solved) if pivot in f else f for f in waiting]
         touched = {v for edge in changed for v in self._touched(edge)}
-        return _Space(rows, {v: f for v, f in space.forms.items() if v not in touched})
+        forms = {v: form for v, form in space.forms.items() if v not in touched}
+        return _Space(rows, forms, users)
 
     def _form(self, v: int, rows: Mapping[Edge, Row]) -> Form:
         """The form of a vertex on a space, as a sum of squares.

@@ -166,7 +166,8 @@ def reduced(
 
 def made_leaf(rows: Rows, size: int, left: Iterable[int]) -> Leaf:
     """A leaf of these rows; `left` are the vertices whose forms remain."""
-    numbers = {edge: tuple(number(x) for x in row) for edge, row in rows.items()}
+    zero = Fraction(0)
+    numbers = {edge: tuple(number(x) if x else zero for x in row) for edge, row in rows.items()}
     return Leaf(numbers, size, tuple(left))
 
 

@@ -83,6 +83,18 @@ def test_a_loop_that_misses_is_closed(symmetric):
                 assert (image[0] + 200, image[1] - 200) == other
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["square-twist", "windmill", "pinwheel-base"])
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("border", ["along", "free"])
+def test_loops_of_twists_are_closed(name, seed, border):
+    sheet, letters = way_of(name, 12)
+    found = designed(missed(sheet, seed, 0.003), letters, border=border)
+    assert found.status is exactfold.PROVED
+    assert match_panels(found.pattern, letters).truly is exactfold.PROVED
+    assert found.largest_move < 0.03 * 440
+
+
 def test_a_mesh_whose_corners_move_is_repaired():
     sheet, letters = way_of("miura", 24)
     near = missed(sheet, 3, 0.002, border=True)
@@ -160,6 +172,23 @@ def test_an_interruption_keeps_the_closest_sheet(monkeypatch):
     assert found.interrupted
     assert found.status is exactfold.UNDECIDED
     assert found.reason.endswith("(the search was interrupted)")
+    assert found.largest_move > 0
+
+
+def test_an_interruption_while_a_sheet_is_matched_keeps_it(monkeypatch):
+    sheet, letters = way_of("square-twist")
+    asked = []
+
+    def interrupted(*arguments, **options):
+        asked.append(arguments)
+        if len(asked) > 1:
+            raise KeyboardInterrupt
+        return match_panels(*arguments, **options)
+
+    monkeypatch.setattr(panel_order, "match_panels", interrupted)
+    found = designed(missed(sheet, 1, 0.004), letters)
+    assert found.interrupted
+    assert found.reason.endswith("no exact sheet was found there (the search was interrupted)")
     assert found.largest_move > 0
 
 
