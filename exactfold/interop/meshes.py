@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -10,7 +12,7 @@ from exactfold._support.arrays import FloatArray, IndexArray
 from exactfold.errors import UsageError
 from exactfold.interop.packages import optional
 from exactfold.pattern.loading import PatternLike, as_pattern
-from exactfold.pattern.panel_pattern import PanelPattern
+from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.pattern.triangulating.panels import triangles_of
 
 if TYPE_CHECKING:
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 FRONT: Final = (0.80, 0.24, 0.16)
 """Linear RGB (red) of the side that shows +z in the flat sheet; the other is paper-coloured."""
 BACK: Final = (0.91, 0.88, 0.80)
+OBJ_COLOURS: Final = {"M": 2, "V": 3}
+"""The colour of a mountain and a valley in an OBJ file; `read_obj` knows them."""
 SECONDS: Final = 4.0
 """The animation takes so many seconds from the first frame to the last."""
 
@@ -28,11 +32,17 @@ _FLOAT, _UINT = 5126, 5125
 _VERTICES, _INDICES = 34962, 34963
 
 
-def obj_text(coords: FloatArray, triangles: IndexArray, name: str) -> str:
-    """A sheet in space as an OBJ file: `coords` has the shape (V, 3), `triangles` (F, 3).
+def obj_text(
+    coords: FloatArray,
+    faces: Iterable[Sequence[int]] | IndexArray,
+    name: str,
+    letters: Mapping[Edge, str] = MappingProxyType({}),
+) -> str:
+    """A sheet in space as an OBJ file: `coords` has the shape (V, 3), `faces` are cycles.
 
     Vertices and faces keep their order; OBJ counts from 1. Seen from the side that shows +z in the
-    flat sheet, the faces are counter-clockwise.
+    flat sheet, the faces are counter-clockwise. Mountains and valleys are comments
+    `#e begin end colour`, as Freeform Origami writes them.
 
     >>> print(obj_text(np.eye(3), np.array([[0, 1, 2]]), "one"))
     o one
@@ -44,7 +54,12 @@ def obj_text(coords: FloatArray, triangles: IndexArray, name: str) -> str:
     """
     lines = [f"o {name}"]
     lines += [f"v {float(x)!r} {float(y)!r} {float(z)!r}" for x, y, z in coords]
-    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in triangles]
+    lines += [" ".join(("f", *(str(v + 1) for v in face))) for face in faces]
+    lines += [
+        f"#e {i + 1} {j + 1} {OBJ_COLOURS[letter]}"
+        for (i, j), letter in letters.items()
+        if letter in OBJ_COLOURS
+    ]
     return "\n".join(lines) + "\n"
 
 

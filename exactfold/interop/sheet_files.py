@@ -13,11 +13,12 @@ import numpy as np
 from exactfold._support.arrays import FloatArray
 from exactfold.interop.meshes import obj_text, stl_bytes
 from exactfold.interop.packages import optional
+from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.triangulating.panels import triangles_of
 from exactfold.pattern.writing.fold_writing import checked_target, write_bytes, write_text
 
 if TYPE_CHECKING:
-    from exactfold.pattern.crease_pattern import CreasePattern, Edge
+    from exactfold.pattern.crease_pattern import Edge
     from exactfold.pattern.panel_pattern import PanelPattern
 
 FOLD_ENDINGS: Final = (".fold", ".json")
@@ -46,10 +47,10 @@ def write_sheet(
     """Write a sheet in the format that the ending of the path names.
 
     ".dxf" is the crease pattern, with a layer for each letter; it needs ezdxf (`pip install
-    'exactfold[dxf]'`). ".obj" and ".stl" are the sheet as a mesh of triangles at `coords`, in the
-    shape (V, 3), or flat in z = 0; STL needs trimesh (`pip install 'exactfold[meshes]'`).
-    Coordinates are floats in the unit of the sheet. Edges without a letter are boundary edges or
-    creases.
+    'exactfold[dxf]'`). ".obj" and ".stl" are the sheet as a mesh at `coords`, in the shape (V, 3),
+    or flat in z = 0. OBJ has a polygon for each panel. STL has triangles, and needs trimesh (`pip
+    install 'exactfold[meshes]'`). Coordinates are floats in the unit of the sheet. Edges without a
+    letter are boundary edges or creases.
 
     Raises `UsageError` for any other ending, `PackageMissingError`, `UnwritableFileError`.
 
@@ -64,13 +65,13 @@ def write_sheet(
     if ending == ".dxf":
         write_text(path, dxf_text(pattern, letters))
         return
-    triangles = np.array(triangles_of(pattern), dtype=np.intp)
     if coords is None:
         coords = np.array([[float(x), float(y), 0.0] for x, y in pattern.vertices])
     if ending == ".obj":
-        write_text(path, obj_text(coords, triangles, name))
+        faces = pattern.triangles if isinstance(pattern, CreasePattern) else pattern.faces
+        write_text(path, obj_text(coords, faces, name, letters))
     else:
-        write_bytes(path, stl_bytes(coords, triangles))
+        write_bytes(path, stl_bytes(coords, np.array(triangles_of(pattern), dtype=np.intp)))
 
 
 def dxf_text(pattern: CreasePattern | PanelPattern, letters: Mapping[Edge, str]) -> str:

@@ -24,12 +24,15 @@ def as_panels(sheet: CreasePattern | PanelPattern) -> PanelPattern:
     return panels(sheet) if isinstance(sheet, CreasePattern) else sheet
 
 
+@pytest.mark.parametrize("ending", [".dxf", ".obj"])
 @pytest.mark.parametrize("name", ["two-vertex", "miura", "square-twist"])
-def test_a_dxf_file_is_read_as_the_same_sheet(name: str, tmp_path: Path) -> None:
+def test_a_drawing_or_polygons_are_read_as_the_same_sheet(
+    name: str, ending: str, tmp_path: Path
+) -> None:
     opened = exactfold.read(name)
     letters = opened.letters or dict(BRANCH.assignment)
-    write_sheet(opened.sheet, letters, tmp_path / "sheet.dxf")
-    back = exactfold.read(tmp_path / "sheet.dxf")
+    write_sheet(opened.sheet, letters, tmp_path / f"sheet{ending}")
+    back = exactfold.read(tmp_path / f"sheet{ending}")
     sheet, again = as_panels(opened.sheet), as_panels(back.sheet)
     places = {tuple(map(float, point)): v for v, point in enumerate(sheet.vertices)}
     number = [places[x, y] for x, y in np.array(again.vertices, dtype=float).tolist()]
