@@ -81,7 +81,10 @@ class DesignOptions(WayOptions):
     ] = None
     fixed: Annotated[
         str | None,
-        typer.Option(metavar="5,7", help="These vertices stay where they are; corners always do."),
+        typer.Option(
+            metavar="5,7",
+            help="These vertices stay where they are; corners do, unless the border is free.",
+        ),
     ] = None
     symmetric: Annotated[
         bool,

@@ -92,14 +92,14 @@ class _PanelSearch:
         if not {"M", "V"} & set(self.letters.values()):
             raise UsageError("no fold has the letter M or V: give one at least")
         symmetries = symmetries_of(pattern, self.letters) if symmetric else []
-        self.places = Places(
-            pattern,
-            fixed,
-            symmetries if len(symmetries) > 1 else [],
-            free_border=border == "free",
-        )
+        if len(symmetries) == 1:
+            raise UsageError(
+                "no rotation or reflection keeps the sheet and its letters, or turns all of them: "
+                "ask for no symmetries"
+            )
+        self.places = Places(pattern, fixed, symmetries, free_border=border == "free")
         self.slopes = Slopes(self.places, self.letters)
-        self.within = self.places.width / 10 if within is None else float(within)
+        self.within = Fraction(self.places.width) / 10 if within is None else within
         self.interrupted = False
         self.steps = 0
         self.best: tuple[Equations, Attempt] | None = None
@@ -110,7 +110,7 @@ class _PanelSearch:
         if why := impossible_letters(self.pattern, self.letters):
             return self._result(self.pattern, REFUTED, why)
         matched = self._match(self.pattern)
-        if matched.truly is PROVED:
+        if matched.truly is PROVED and self.places.symmetric_already:
             return self._result(self.pattern, PROVED, _BEGINS)
         try:
             if (reached := self._searched()) is not None:
@@ -274,7 +274,7 @@ class _PanelSearch:
 
     def _walled(self, equations: Equations, x: FloatArray) -> str:
         """What keeps the vertices from moving on."""
-        off = np.abs(equations.places(x[: equations.moves.shape[1]]).ravel() - equations.origin)
+        off = np.abs(equations.places(x[: equations.moves.shape[1]]).ravel() - equations.given)
         far = off.reshape(-1, 2).max(axis=1)
         walled = [v for v in self.places.movable if far[v] > 0.97 * equations.within]
         if walled:

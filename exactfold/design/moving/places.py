@@ -10,6 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -46,14 +47,20 @@ class Symmetry:
         x, y = vector
         return a * x + b * y, c * x + d * y
 
+    def image(self, point: tuple[Any, Any], centre: tuple[Fraction, Fraction]) -> tuple[Any, Any]:
+        """The image of a point."""
+        x, y = self.applied((point[0] - centre[0], point[1] - centre[1]))
+        return x + centre[0], y + centre[1]
+
 
 class Places:
     """The places of the vertices: `start` plus combinations of the `columns`.
 
     Vertices inside the sheet move freely, and those of the border along it, or freely, too, if
     `free_border`. Corners stay otherwise, and so do the vertices `fixed` and their images under the
-    `symmetries`. Raises `UsageError` for a vertex that does not exist or if no vertex may move, and
-    `NotCountedError` if a vertex that stays has an irrational coordinate.
+    `symmetries`. Raises `UsageError` for a vertex that does not exist, if no vertex may move, and
+    if fixed vertices are not where symmetries take them; `NotCountedError` if a vertex that stays
+    has an irrational coordinate.
     """
 
     def __init__(
@@ -82,7 +89,10 @@ class Places:
         self.movable = tuple(v for v in range(len(floats)) if v not in stays)
         if not self.movable:
             raise UsageError("no vertex may move: fix fewer of them")
+        self.given = floats.ravel()
+        """The vertices as they are, in floats; (2 V,)."""
         self.start = self._rounded(floats)
+        self._keep(fixed)
         self.columns = self._columns()
 
     def _slides(self, floats: FloatArray, fixed: Collection[int]) -> dict[int, tuple[int, int]]:
@@ -124,15 +134,47 @@ class Places:
                 points[v] = ax + t * (bx - ax), ay + t * (by - ay)
         if not self.symmetries:
             return points
-        centre = centre_of(self.pattern)
         sums = [[Fraction(0), Fraction(0)] for _ in points]
         for one in self.symmetries:
             for v, (x, y) in enumerate(points):
-                moved = one.applied((x - centre[0], y - centre[1]))
-                for axis in (0, 1):
-                    sums[one.vertices[v]][axis] += moved[axis] + centre[axis]
+                for axis, moved in enumerate(one.image((x, y), self.centre)):
+                    sums[one.vertices[v]][axis] += moved
         number = len(self.symmetries)
         return [(x / number, y / number) for x, y in sums]
+
+    def _keep(self, fixed: Collection[int]) -> None:
+        """Takes the fixed vertices where they are given, and their images where these belong."""
+        if not self.symmetries:
+            return
+        known: dict[int, tuple[int, tuple[Fraction, Fraction]]] = {}
+        for v in fixed:
+            x, y = (_exact(v, c) for c in self.pattern.vertices[v])
+            for one in self.symmetries:
+                u = one.vertices[v]
+                self.start[u] = one.image((x, y), self.centre)
+                first, place = known.setdefault(u, (v, self.start[u]))
+                if place != self.start[u]:
+                    raise UsageError(
+                        f"vertex {v} is fixed, and not where a symmetry takes it: leave it out"
+                        if first == v
+                        else f"vertices {first} and {v} are fixed, and not where a symmetry takes "
+                        "them: leave one of them out"
+                    )
+
+    @property
+    def symmetric_already(self) -> bool:
+        """Whether the given vertices have exactly the symmetries that are kept."""
+        points = self.pattern.vertices
+        return all(
+            one.image(points[v], self.centre) == points[u]
+            for one in self.symmetries
+            for v, u in enumerate(one.vertices)
+        )
+
+    @cached_property
+    def centre(self) -> tuple[Fraction, Fraction]:
+        """The point that all symmetries keep."""
+        return centre_of(self.pattern)
 
     def _columns(self) -> list[Column]:
         columns: list[Column] = []

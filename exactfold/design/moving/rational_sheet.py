@@ -84,10 +84,11 @@ def _as_sheet(equations: Equations, x: FloatArray, points: Sequence[Vector]) -> 
     unit = float(equations.unit)
     floats = np.array([[float(c) for c in point] for point in points]) / unit
     proposed = equations.places(x[: equations.moves.shape[1]])
-    origin = equations.origin.reshape(-1, 2)
     if np.abs(floats - proposed).max() > _OFF * equations.within:
         return None
-    if np.abs(floats - origin).max() > (1 + 1e-6) * equations.within:
+    pairs = zip(points, given.vertices, strict=True)
+    box, moved = equations.box, (d for p, q in pairs for d in (p[0] - q[0], p[1] - q[1]))
+    if not all(-box <= d <= box for d in moved):
         return None
     try:
         sheet = PanelPattern(points, given.edges, given.holes)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
@@ -25,6 +26,8 @@ from exactfold._support.arrays import FloatArray, IndexArray
 from exactfold.design.moving.places import ONE, Column, Places
 from exactfold.pattern.panel_pattern import Edge
 
+_ROUNDING = 1e-4
+"""Floats keep so large a share of the box for the rounding of places."""
 _LEAST_JUMP = 1.0
 """Slopes are so large that every fold with a letter has a jump of this size at least."""
 
@@ -130,18 +133,23 @@ class Slopes:
 class Equations:
     """Residuals and their derivatives, in floats, for p (shares of places) and q (of slopes).
 
-    Lengths are in units of `Places.unit`. `loops` are vertices with four panels around them whose
+    Lengths are in units of `Places.unit`, but for `box`, how far an exact vertex may move along an
+    axis; floats stay within a little less. `loops` are vertices with four panels around them whose
     gains are to be constant.
     """
 
-    def __init__(self, slopes: Slopes, within: float, loops: tuple[int, ...] = ()) -> None:
+    def __init__(
+        self, slopes: Slopes, within: float | Fraction, loops: tuple[int, ...] = ()
+    ) -> None:
         self.slopes, self.loops = slopes, loops
         places = slopes.places
         self.unit = places.unit
         self.moves = places.matrix
         self.origin = places.origin / float(self.unit)
         self.turns = slopes.matrix
-        self.within = within / float(self.unit)
+        self.given = places.given / float(self.unit)
+        self.box = Fraction(within)
+        self.within = (1 - _ROUNDING) * float(self.box / self.unit)
         folds = slopes.folds
         self.ends = np.array([[f.start, f.end] for f in folds], dtype=np.intp).reshape(-1, 2)
         self.sides = np.array([[f.left, f.right] for f in folds], dtype=np.intp).reshape(-1, 2)
@@ -257,7 +265,7 @@ class Equations:
         values = [self.signs[wanted] * signed[wanted] - _LEAST_JUMP]
         rows = [by[:, :nu] @ self.moves, by[:, nu:] @ self.turns]
         jacobian = [np.concatenate(rows, axis=1)]
-        moved = self.moves @ x[:k]
+        moved = self.origin - self.given + self.moves @ x[:k]
         for sign in (1, -1):
             values.append((self.within - sign * moved) / self.within)
             jacobian.append(self._of_places(-sign * self.moves / self.within))

@@ -83,6 +83,56 @@ def test_a_loop_that_misses_is_closed(symmetric):
                 assert (image[0] + 200, image[1] - 200) == other
 
 
+def turned(point):
+    """The image of a point when the square twist is turned by 180 degrees."""
+    return 400 - point[0], -400 - point[1]
+
+
+def moves(found):
+    """How far each vertex moves along an axis, exactly."""
+    pairs = zip(found.pattern.vertices, found.original.vertices, strict=True)
+    return [max(abs(p[0] - q[0]), abs(p[1] - q[1])) for p, q in pairs]
+
+
+def test_with_symmetries_fixed_vertices_stay_and_take_their_images_along():
+    sheet, letters = way_of("square-twist")
+    near = missed(sheet, 1, 0.004)
+    found = designed(near, letters, symmetric=True, fixed=[4])
+    assert found.status is exactfold.PROVED
+    assert found.pattern.vertices[4] == near.vertices[4]
+    assert found.pattern.vertices[6] == turned(near.vertices[4]) != near.vertices[6]
+    with pytest.raises(UsageError, match="vertices 4 and 6 are fixed, and not where a symmetry"):
+        designed(near, letters, symmetric=True, fixed=[4, 6])
+
+
+def test_the_box_is_about_the_given_places_also_with_symmetries():
+    sheet, letters = way_of("square-twist")
+    near = missed(sheet, 1, 0.004)
+    wide = designed(near, letters, symmetric=True)
+    box = Fraction(9, 10) * max(moves(wide))
+    narrow = designed(near, letters, within=box, symmetric=True)
+    assert narrow.status is exactfold.PROVED
+    assert max(moves(narrow)) <= box
+
+
+def test_a_sheet_that_folds_is_still_made_symmetric():
+    sheet, letters = way_of("square-twist")
+    folding = designed(missed(sheet, 1, 0.004), letters).pattern
+    assert designed(folding, letters).pattern is folding
+    found = designed(folding, letters, symmetric=True)
+    assert found.status is exactfold.PROVED
+    assert {turned(point) for point in found.pattern.vertices} == set(found.pattern.vertices)
+    assert max(moves(found)) > 0
+
+
+def test_symmetries_that_a_sheet_does_not_have_are_refused():
+    sheet, letters = way_of("square-twist")
+    one = sheet.folds[0]
+    other = letters | {one: {"M": "V", "V": "M"}[letters[one]]}
+    with pytest.raises(UsageError, match="no rotation or reflection keeps the sheet"):
+        designed(sheet, other, symmetric=True)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["square-twist", "windmill", "pinwheel-base"])
 @pytest.mark.parametrize("seed", range(4))
