@@ -9,7 +9,7 @@ from exactfold._support.clock import Clock
 from exactfold.app.options.choosing import choice_of, indices
 from exactfold.app.options.tolerances import DesignOptions
 from exactfold.app.shell.patterns import read_any
-from exactfold.app.shell.shell import EXIT, Bar, name_of, sheet_written, wrote
+from exactfold.app.shell.shell import EXIT, Bar, name_of, sheet_written, tell, wrote
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.app.verbs.chosen import asked_letters
 from exactfold.branches.counting.find import find_branch
@@ -30,6 +30,11 @@ from exactfold.pattern.writing.fold_writing import (
     write_text,
 )
 from exactfold.pattern.writing.panel_writing import converted
+
+_SNAP = (
+    "other commands need --snap exact to take its coordinates as they are: some relations between "
+    "its creases hold nearly, not exactly"
+)
 
 
 class Asked(DesignOptions):
@@ -70,6 +75,8 @@ class Asked(DesignOptions):
             report.show(report.design_report(found))
             if self.output is not None:
                 wrote(self.output, sheet_written(found.pattern))
+                if Opened(found.pattern, {}).left:
+                    tell(_SNAP)
         return EXIT[found.status]
 
     def _letters(self, opened: Opened, bar: Bar) -> dict[tuple[int, int], str] | None:

@@ -1,6 +1,7 @@
 """`exactfold design`: what it prints and writes, its exit codes, and what it refuses."""
 
 import json
+from fractions import Fraction
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -9,8 +10,11 @@ from shown import near_miss
 
 import exactfold
 from exactfold.design import designed
-from exactfold.pattern import write_fold
+from exactfold.pattern import PanelPattern, write_fold
 from exactfold.pattern.families import two_vertex
+from exactfold.pattern.opened import Opened
+from exactfold.pattern.writing.fold_writing import document_text, write_text
+from exactfold.pattern.writing.panel_writing import converted
 
 
 def test_command_and_function_give_the_same(tmp_path):
@@ -87,6 +91,27 @@ def test_panels_are_written_with_their_letters_and_read_again(tmp_path):
     same = run("design", path, "--letters", "drawn", "--symmetric", "--border", "free")
     assert "PROVED" in same.stdout
     assert "moved" not in same.stdout
+
+
+@pytest.mark.parametrize(("off", "nearly"), [("1/500000", True), ("0", False)])
+def test_where_the_new_sheet_may_be_taken_for_an_inexact_drawing_a_line_says_so(
+    off, nearly, tmp_path
+):
+    """The border is bent a little at vertex 1, or not."""
+    rim = [(2 + Fraction(off), 0), (2, 2), (0, 2), (-2, 2), (-2, 1), (-2, -2), (1, -2), (2, -2)]
+    edges = [(k, k % 8 + 1) for k in range(1, 9)] + [(0, 1), (0, 3), (0, 5), (0, 7)]
+    sheet = PanelPattern([(0, 0), *rim], edges)
+    write_text(tmp_path / "a.fold", document_text(converted(Opened(sheet, {})).document()))
+    options = ["--way", 1, "--snap", "exact", "-o", tmp_path / "b.fold"]
+    found = run("design", tmp_path / "a.fold", *options)
+    assert found.exit_code == PROVED
+    said = "other commands need --snap exact" in " ".join(found.stdout.split())
+    assert said == nearly
+    as_written = exactfold.read(tmp_path / "b.fold", snap="exact")
+    assert as_written.sheet.vertices == sheet.vertices
+    taken = exactfold.read(tmp_path / "b.fold")
+    assert (taken.sheet.vertices != sheet.vertices) == nearly
+    assert run("match", tmp_path / "b.fold", "--snap", "exact").exit_code == PROVED
 
 
 def test_a_way_of_panels_gives_its_letters():
