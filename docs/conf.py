@@ -32,7 +32,7 @@ copyright = f"2026, {author}"
 version = release = exactfold.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx_copybutton", "sphinx_design"]
-exclude_patterns = ["_static", "pictures"]
+exclude_patterns = ["_static", "paper", "pictures"]
 myst_enable_extensions = ["dollarmath", "colon_fence", "html_image"]
 myst_heading_anchors = 4
 nb_execution_mode = "off"

@@ -40,7 +40,7 @@ def begun(
     if not {"M", "V"} & set(asked.values()) or with_letters(answer.known, asked):
         return None, ""
     if answer.known.pattern.holes:
-        return None, not_the_drawn("")
+        return None, "no way is known with the mountains and valleys of the drawing"
     matched = match_panels(opened, asked, clock=Clock(SECONDS))
     if matched.starts is REFUTED:
         none = "it is proved that the sheet does not start to fold with the mountains and valleys "

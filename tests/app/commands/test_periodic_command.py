@@ -50,7 +50,9 @@ def test_the_answer_in_words(tmp_path: Path) -> None:
     assert "3 spaces of pleats" in words
     twist = run("count", "square-twist-cell", "--direction", "1,2", "--certificate", tmp_path / "c")
     assert "irrational heights" in twist.stdout
-    assert "no certificate was written" in twist.stderr
+    checked = run("check", tmp_path / "c").stdout
+    assert checked.startswith("VALID: 6 branches of a periodic sheet for the direction 1,2")
+    assert "2 spaces of pleats" in checked
 
 
 def test_a_cell_is_folded_and_written(tmp_path: Path) -> None:
