@@ -130,8 +130,11 @@ def write_certificate(
     certificate: Document | CertificateLines, path: str | os.PathLike[str]
 ) -> None:
     """Write a certificate; if this fails, no part of it is left. Raises `UnwritableFileError`."""
+    write_text(path, certificate_text(certificate))
+
+
+def certificate_text(certificate: Document | CertificateLines) -> str:
+    """The text of the file of a certificate."""
     if isinstance(certificate, CertificateLines):
-        text = certificate.text
-    else:
-        text = json.dumps(certificate, separators=(",", ":")) + "\n"
-    write_text(path, text)
+        return certificate.text
+    return json.dumps(certificate, separators=(",", ":")) + "\n"
