@@ -133,8 +133,8 @@ def write_certificate(
     write_text(path, certificate_text(certificate))
 
 
-def certificate_text(certificate: Document | CertificateLines) -> str:
-    """The text of the file of a certificate."""
-    if isinstance(certificate, CertificateLines):
-        return certificate.text
+def certificate_text(certificate: Document | tuple[str, ...]) -> str:
+    """The text of the file of a certificate, or of its lines."""
+    if isinstance(certificate, tuple):
+        return CertificateLines(certificate).text
     return json.dumps(certificate, separators=(",", ":")) + "\n"

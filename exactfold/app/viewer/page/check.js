@@ -1,17 +1,17 @@
 // The checker in the page: Pyodide runs it, and it verifies the certificate that the page contains.
 
-const RUN = `
-import contextlib, io, runpy, sys
-sys.argv = ["checker", "/certificate"]
-said = io.StringIO()
-with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-    try:
-        runpy.run_path("/checker.zip", run_name="__main__")
-        code = 0
-    except SystemExit as ended:
-        code = ended.code
-(code, said.getvalue().strip())
-`;
+const RUN = [
+  "import contextlib, io, runpy, sys",
+  "sys.argv = ['checker', '/certificate']",
+  "said = io.StringIO()",
+  "with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):",
+  "    try:",
+  "        runpy.run_path('/checker.zip', run_name='__main__')",
+  "        code = 0",
+  "    except SystemExit as ended:",
+  "        code = ended.code",
+  "(code, said.getvalue().strip())",
+].join("\n");
 
 // A button that checks, and the verdict beside it.
 export function createChecking({ certificate, source, pyodide }) {
@@ -24,7 +24,7 @@ export function createChecking({ certificate, source, pyodide }) {
     try {
       const address = new URL(pyodide, location.href);
       if (address.protocol === "file:") {
-        throw new Error("a browser loads Python only from a server. Run `python -m http.server` in the folder of this page, and open the page at http://localhost:8000");
+        throw new Error("a browser loads Python only from a server. Run `python -m http.server` in the folder of this page, and open the page from there");
       }
       const { loadPyodide } = await import(new URL("pyodide.mjs", address).href);
       const python = await loadPyodide({ indexURL: address.href });
