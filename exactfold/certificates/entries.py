@@ -130,8 +130,11 @@ def write_certificate(
     certificate: Document | CertificateLines, path: str | os.PathLike[str]
 ) -> None:
     """Write a certificate; if this fails, no part of it is left. Raises `UnwritableFileError`."""
-    if isinstance(certificate, CertificateLines):
-        text = certificate.text
-    else:
-        text = json.dumps(certificate, separators=(",", ":")) + "\n"
-    write_text(path, text)
+    write_text(path, certificate_text(certificate))
+
+
+def certificate_text(certificate: Document | tuple[str, ...]) -> str:
+    """The text of the file of a certificate, or of its lines."""
+    if isinstance(certificate, tuple):
+        return CertificateLines(certificate).text
+    return json.dumps(certificate, separators=(",", ":")) + "\n"

@@ -155,8 +155,11 @@ def refused_for(line: Line) -> str:
 
 
 def remedy_of(line: Line) -> list[str]:
-    """The options of `count` that the message to a refused file names; empty if there are none."""
-    if line["code"] != 3 or line["result"] is None:
+    """The options of `count` that the message to a refused file names; empty if there are none.
+
+    They are not looked for in files with several sheets.
+    """
+    if line["code"] != 3 or line["result"] is None or "sheets" in line:
         return []
     message = line["result"]["error"]["message"]
     return next((options for named, options in REMEDIES.items() if named in message), [])

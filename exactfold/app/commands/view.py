@@ -19,9 +19,12 @@ from exactfold.app.report.terminal import show
 from exactfold.app.shell.patterns import located, read_any
 from exactfold.app.shell.shell import Bar, apart, interruptible, say, tell, wrote
 from exactfold.app.verbs.choosing import choose
+from exactfold.app.verbs.counting import count
 from exactfold.app.verbs.showing import shown
+from exactfold.app.viewer.checking import PageChecker, page_checker, policy_source
 from exactfold.app.viewer.page import checked_page, write_view
 from exactfold.app.viewer.rolling import write_rolling_view
+from exactfold.certificates.entries import certificate_text
 from exactfold.errors import UsageError
 from exactfold.motion.periodic.patch import CELLS
 from exactfold.pattern.opening import Opened, is_cell_file
@@ -55,9 +58,21 @@ class Wanted(ViewOptions):
                 workers=self.workers or available_cores(),
                 limit=clock,
                 progress=bar,
+                checker=self._checker(opened),
             )
         show(Text(document["answer"]))
         wrote(output, _contents(document))
+
+    def _checker(self, opened: Opened) -> PageChecker | None:
+        """The checker for the page, with the certificate of the count; None if not asked for.
+
+        Raises `NotApplicableError` if the count has no certificate.
+        """
+        if self.pyodide is None:
+            return None
+        policy_source(self.pyodide)  # before the work
+        certificate = count(opened, limit=self.limit).certificate()
+        return page_checker(certificate_text(certificate), self.pyodide)
 
     def _rolling(self, output: Path, name: str, clock: Clock) -> None:
         """Write the page of a periodic sheet."""
@@ -66,6 +81,8 @@ class Wanted(ViewOptions):
                 f"{self.file} is the cell of a periodic sheet: give --direction X,Y, across which "
                 "it rolls up"
             )
+        if self.pyodide is not None:
+            raise UsageError("--with-checker does not go with --direction")
         if self.is_named and self.way is None:
             raise UsageError("only --way N, --patch, --frames and --prove go with --direction")
         with Bar("reading") as bar, interruptible():

@@ -114,6 +114,16 @@ class ViewOptions(WayOptions):
             "the contacts.",
         ),
     ] = False
+    pyodide: Annotated[
+        str | None,
+        typer.Option(
+            "--with-checker",
+            metavar="PYODIDE",
+            help="Also put the certificate of the count and the checker into the page, which "
+            "verifies it in the browser. PYODIDE is the folder of Pyodide beside the page, or the "
+            "address of a copy.",
+        ),
+    ] = None
     workers: Annotated[
         int | None,
         number("Number of processes that follow motions. Default: all cores."),

@@ -18,6 +18,7 @@ from exactfold._support.clock import LIMIT, Clock
 from exactfold._support.progress import Progress
 from exactfold.app.pictures import crease_style
 from exactfold.app.pictures.flat_states import BACK, FRONT, OPAQUE
+from exactfold.app.viewer.checking import PageChecker, policy_source
 from exactfold.app.viewer.document import FRAMES, ViewDocument, view_document
 from exactfold.pattern.loading import PatternLike
 from exactfold.pattern.writing.fold_writing import checked_target, write_text
@@ -38,17 +39,21 @@ _LIGHTNESS: Final = 0.66
 """The least lightness of a line on dark ground; the boundary is lighter still."""
 
 
-def view_page(document: Mapping[str, Any]) -> str:
+def view_page(document: Mapping[str, Any], checker: PageChecker | None = None) -> str:
     """The HTML text of the page that shows a `view_document`.
 
     A content security policy allows its scripts and styles by their digests, and nothing else. So
-    no text in a pattern can run as code, and the page sends no requests to any network.
+    no text in a pattern can run as code, and the page sends no requests to any network. With a
+    `checker`, the page may load Pyodide from the address that this names, and from no other.
 
     >>> page = view_page(view_document("single-vertex-4", name="</script>", frames=3))
     >>> page.count("</script>")
     3
     """
-    return _page(f"{document['name']} - exactfold", document, bool(document["served"]))
+    title, served = f"{document['name']} - exactfold", bool(document["served"])
+    if checker is None:
+        return _page(title, document, served)
+    return _page(title, {**document, "checker": checker}, served, policy_source(checker["pyodide"]))
 
 
 def start_page(name: str, *, begins: bool) -> str:
@@ -58,20 +63,21 @@ def start_page(name: str, *, begins: bool) -> str:
 
 
 @cache
-def page_policy(*, served: bool, framed: bool = False) -> str:
+def page_policy(*, served: bool, framed: bool = False, python: str = "") -> str:
     """The content security policy of the page: its own scripts and styles, and nothing else.
 
     With `served`, the page may ask the server that it came from. With `framed`, the policy also
-    says that no page may show this one in a frame, which only a header can say.
+    says that no page may show this one in a frame, which only a header can say. `python` is the
+    source of Pyodide (`policy_source`); without it, none may be loaded.
     """
-    policy = _policy([_library(), _script()], _style(), served)
+    policy = _policy([_library(), _script()], _style(), served, python)
     return f"{policy}; frame-ancestors 'none'" if framed else policy
 
 
-def _page(title: str, data: Mapping[str, Any], served: bool) -> str:
+def _page(title: str, data: Mapping[str, Any], served: bool, python: str = "") -> str:
     parts = {
         "title": html.escape(title),
-        "policy": page_policy(served=served),
+        "policy": page_policy(served=served, python=python),
         "style": _style(),
         "data": script_json(data),
         "library": _library(),
@@ -105,10 +111,12 @@ def write_view(
     workers: int = 1,
     limit: float | Clock = LIMIT,
     progress: Progress | None = None,
+    checker: PageChecker | None = None,
 ) -> ViewDocument:
     """Write the page of a sheet to a file, and return the document that it shows.
 
-    See `view_document`. Raises the errors of `view_document`, and `UnwritableFileError`.
+    See `view_document` and, for `checker`, `page_checker`. Raises the errors of `view_document`,
+    and `UnwritableFileError`.
 
     >>> import os, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -128,7 +136,7 @@ def write_view(
         limit=limit,
         progress=progress,
     )
-    write_text(Path(path), view_page(document))
+    write_text(Path(path), view_page(document, checker))
     return document
 
 
@@ -167,12 +175,15 @@ def _script() -> str:
     return '"use strict";\n\n' + look_script() + "\n" + "\n\n".join(parts) + "\n"
 
 
-def _policy(scripts: Sequence[str], style: str, served: bool) -> str:
-    """A content security policy that allows only these texts."""
+def _policy(scripts: Sequence[str], style: str, served: bool, python: str) -> str:
+    """A content security policy that allows only these texts, and Pyodide from its source."""
     allowed = " ".join(_digest(text) for text in scripts)
+    if python:
+        allowed += f" 'wasm-unsafe-eval' {python}"
+    asked = " ".join(dict.fromkeys([*([_SELF] if served else []), *([python] if python else [])]))
     return (
         f"default-src 'none'; script-src {allowed}; style-src {_digest(style)}; "
-        f"img-src data: blob:; connect-src {_SELF if served else _NOBODY}; "
+        f"img-src data: blob:; connect-src {asked or _NOBODY}; "
         "base-uri 'none'; form-action 'none'"
     )
 

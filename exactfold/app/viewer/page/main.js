@@ -1,5 +1,6 @@
 // The page: it shows the sheet that it contains, or those that its server reads.
 
+import { createChecking } from "./check.js";
 import { createEditing } from "./edit.js";
 import { createFilm } from "./film.js";
 import { loadState, saveState } from "./hash.js";
@@ -26,6 +27,7 @@ function show(page, begin) {
   });
   createFilm(view, server);
   editing?.attach(view);
+  if (page.checker) createChecking(page.checker);
   saveState(view, editing);
   Object.assign(window.exactfold, { page, store: view.store, foldFile: view.foldFile, positions: view.positions, angles: view.angles, drawn: view.drawn, view });
 }
