@@ -12,7 +12,7 @@ from exactfold.app.options.choosing import choice_of
 from exactfold.app.options.motions import ActuateOptions
 from exactfold.app.shell.json_numbers import numbers_by_name
 from exactfold.app.shell.patterns import in_doubt, read_any, tell_doubt, verdict
-from exactfold.app.shell.shell import EXIT, Bar, name_of, say
+from exactfold.app.shell.shell import EXIT, Bar, name_of, say, wrote
 from exactfold.app.verbs.actuating import Actuated, actuate_opened
 from exactfold.app.verbs.choosing import the_branch
 from exactfold.app.verbs.chosen import Choice
@@ -62,6 +62,8 @@ class Driven(ActuateOptions):
 
             tell_doubt(opened)
             report.show(report.actuation_report(found, everything=self.everything))
+            if self.output is not None:
+                wrote(self.output, "the torques in N mm")
         return EXIT[verdict(opened, found.status)]
 
     def _listed(self, opened: Opened, choice: Choice, bar: Bar) -> Choice:
