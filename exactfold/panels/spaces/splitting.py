@@ -54,6 +54,8 @@ class _Space:
     rows: Mapping[Edge, Row]
     forms: Mapping[int, Form]
     found: Mapping[int, frozenset[Edge]] | None = None
+    changed: frozenset[int] = frozenset()
+    """The vertices whose form may differ from that on the space from which this one was made."""
 
     @cached_property
     def users(self) -> Mapping[int, frozenset[Edge]]:
@@ -96,6 +98,9 @@ class Splitting(LimitedSearch):
         self._field = common_field(x for star in stars.values() for d in star.directions for x in d)
         self._other_factors: dict[tuple[int, int], tuple[Form, Row, Row | None]] = {}
         self._local = {v: _local(star, clock) for v, star in stars.items()}
+        self._both_signs = {
+            v: len({sign(d) for d, _ in squares}) == 2 for v, (*_, squares) in self._local.items()
+        }
 
     def leaves(self, rows: Rows, size: int) -> list[Leaf]:
         """The leaves of a space without the flat state.
@@ -235,31 +240,37 @@ class Splitting(LimitedSearch):
         known = set(settled)
         split: dict[int, bool] = {}
         waiting = sorted({v for edge in space.rows for v in self._touched(edge)} - known)
-        forms = dict(space.forms)
+        forms: dict[int, Form | None] = dict(space.forms)
         while waiting:
             v = heappop(waiting)
             if v not in forms:
-                forms[v] = self._form(v, space.rows)
+                free = self._both_signs[v] and are_independent(self._rows_at(v, space.rows))
+                forms[v] = None if free else self._form(v, space.rows)
             form = forms[v]
-            if not form:
+            if form is None:  # that of the vertex by itself; it is computed in the end
+                split[v] = len(self._local[v][2]) == 2
+            elif not form:
                 known.add(v)
             elif len({sign(d) for d, _ in form}) == 1:
                 self.sums = self.sums or len(form) > 1
                 known.add(v)
-                here = _Space(space.rows, forms, space.users)
-                smaller = self._imposed(here, [row for _, row in form])
+                smaller = self._imposed(space, [row for _, row in form])
                 if smaller is None:
                     return None
+                changed = smaller.changed
                 space = smaller
-                for u in forms.keys() - space.forms.keys() - known:
+                for u in forms.keys() & changed - known:
                     split.pop(u, None)
                     heappush(waiting, u)
-                forms = dict(space.forms)
+                forms = {u: form for u, form in forms.items() if u not in changed}
             else:
                 split[v] = len(form) == 2
         products = sorted(v for v, both in split.items() if both)
         left = sorted(v for v, both in split.items() if not both)
-        return _Space(space.rows, forms, space.users), frozenset(known), products, left
+        whole = {
+            u: self._form(u, space.rows) if form is None else form for u, form in forms.items()
+        }
+        return _Space(space.rows, whole, space.users), frozenset(known), products, left
 
     def _imposed(self, space: _Space, functionals: Sequence[Row]) -> _Space | None:
         """The subspace on which linear functions vanish; None if a kept row vanishes on it."""
@@ -289,7 +300,11 @@ class Splitting(LimitedSearch):
             waiting = [without(f, pivot, solved) if pivot in f else f for f in waiting]
         touched = {v for edge in changed for v in self._touched(edge)}
         forms = {v: form for v, form in space.forms.items() if v not in touched}
-        return _Space(rows, forms, users)
+        return _Space(rows, forms, users, frozenset(touched))
+
+    def _rows_at(self, v: int, rows: Mapping[Edge, Row]) -> list[Row]:
+        """The densities of the folds that determine those of a vertex."""
+        return [rows.get(edge, {}) for edge in self._local[v][0]]
 
     def _form(self, v: int, rows: Mapping[Edge, Row]) -> Form:
         """The form of a vertex on a space, as a sum of squares.
@@ -298,7 +313,7 @@ class Splitting(LimitedSearch):
         are independent on the space, the squares are those of the vertex by itself.
         """
         folds, matrix, squares = self._local[v]
-        local = [rows.get(edge, {}) for edge in folds]
+        local = self._rows_at(v, rows)
         numbers = (x for row in local for x in row.values())
         degree = max((x.field.dimension for x in numbers if isinstance(x, Surd)), default=1)
         self.count(len(folds) ** 2 * degree)
