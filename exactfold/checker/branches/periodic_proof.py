@@ -201,15 +201,18 @@ class PeriodicProof:
         self._branch(signs, _sign(ray[-1]), letters)
 
     def _lines(self, entries: list[Any]) -> None:
-        """Cover the sign vectors of lines over quadratic fields."""
-        known: list[Any] = []
+        """Cover the sign vectors of lines over quadratic fields.
+
+        The solutions with the signs of a line are this line alone, as it is a component. So signs
+        that are covered before belong to the same line, whatever its numbers look like.
+        """
         for entry in entries:
             line = QuadraticLine(self.forms, entry)
-            require(entry not in known, "a line is listed twice")
-            known.append(entry)
             signs = [line.sign(row) for row in self.forms.vertices.values()]
             for completed in product(*((s,) if s else (1, -1) for s in signs)):
-                self._cover(completed)
+                pair = tuple(completed[0] * s for s in completed)
+                require(pair not in self.covered, "the signs of a line are covered before")
+                self.covered.add(pair)
             bend = [Fraction(0)] * self.forms.size + [Fraction(1)]
             if b := line.sign(bend):
                 letters = [_LETTERS[line.sign(row)] for row in self.forms.folds]

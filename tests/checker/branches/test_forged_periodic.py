@@ -257,27 +257,40 @@ def with_line(name: str, radicand: int, point: list[list[str]]) -> Document:
 
 
 def test_a_line_over_a_square_is_two_points() -> None:
-    """With sqrt 4 = 2 the point and its conjugate are two pleats, one of which is listed, too."""
+    """With sqrt 4 = 2 the point and its conjugate are two pleats, one of which is listed, too.
+
+    Without this line of the checker the signs of the line would be wrong where they are 0, so that
+    others would be open.
+    """
     point = [["1", "0"], ["1/2", "1/4"], ["1/2", "-1/4"], ["0", "0"]]
     document = with_line("pleat", 4, point)
-    false(document, "a radicand is a square")
+    refused(document, "a radicand is a square")
 
 
 def test_a_rational_line_is_a_space_again() -> None:
     document = with_line("pleat", 5, [["1", "0"], ["1", "0"], ["0", "0"], ["0", "0"]])
+    spaces(document).pop(0)  # the same line
     false(document, "a line is rational")
 
 
-def test_a_line_that_is_listed_twice_would_be_two_pleats() -> None:
+@pytest.mark.parametrize(
+    ("radicand", "times", "one"), [(5, 1, "1"), (5, 1, "2/2"), (20, Fraction(1, 2), "1")]
+)
+def test_a_line_that_is_listed_twice_would_be_two_pleats(
+    radicand: int, times: Fraction, one: str
+) -> None:
+    """Also if its numbers are written in another way, or with another root."""
     document = periodic_file("line")
-    lines(document).append(lines(document)[0])
-    false(document, "a line is listed twice")
+    again = [[a, str(times * Fraction(c))] for a, c in lines(document)[0]["point"]]
+    again[0][0] = one
+    lines(document).append({"radicand": radicand, "point": again})
+    false(document, "the signs of a line are covered before")
 
 
-def test_a_line_with_another_factor_would_be_another_pleat() -> None:
+def test_a_line_with_another_factor_is_not_the_listed_one() -> None:
     document = periodic_file("line")
     scaled = [[str(2 * Fraction(x)) for x in pair] for pair in lines(document)[0]["point"]]
-    lines(document).append({"radicand": 5, "point": scaled})
+    lines(document)[0] = {"radicand": 5, "point": scaled}
     false(document, "the first entry of a line that is not 0 is not 1")
 
 
@@ -288,8 +301,11 @@ def test_a_line_that_is_no_solution() -> None:
 
 
 def test_a_line_of_a_family_would_be_a_branch_of_its_own() -> None:
+    """Its signs are covered by the family, too, so that the last line of the checker stops it."""
     document = with_line("family", 2, [["0", "0"], ["1", "0"], ["1", "0"], ["0", "1"]])
-    false(document, "a line lies in a larger space of solutions")
+    refused(document, "a line lies in a larger space of solutions")
+    with without("a line lies in a larger space of solutions"):
+        refused(document, "the signs of a line are covered before")
 
 
 def test_a_line_without_which_signs_are_open() -> None:
