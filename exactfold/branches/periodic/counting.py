@@ -15,7 +15,12 @@ from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.exactly import ExactRay, exact_rays
 from exactfold.branches.periodic.lines import agree, covering, rational_point
 from exactfold.branches.periodic.rays import Ray, prove_rays
-from exactfold.branches.periodic.result import Evidence, PeriodicCount
+from exactfold.branches.periodic.result import (
+    AlgebraicLine,
+    Evidence,
+    HeightSpace,
+    PeriodicCount,
+)
 from exactfold.branches.periodic.shown import Shown, sorted_branches
 from exactfold.branches.periodic.spaces import Cover, Space, Spaces, combined, echelon
 from exactfold.errors import NotCountedError
@@ -154,8 +159,14 @@ def _of_exact(problem: PeriodicProblem, rays: Sequence[ExactRay]) -> PeriodicCou
         PROVED,
         f"a Groebner basis has {number} solutions with multiplicity, which are all",
         sorted_branches(shown.branch(ray.signs, ray.b, ray.letters) for ray in rays if ray.b),
-        tuple(shown.algebraic(ray) for ray in rays if not ray.b),
+        tuple(_pleat(shown, ray) for ray in rays if not ray.b),
     )
+
+
+def _pleat(shown: Shown, ray: ExactRay) -> HeightSpace | AlgebraicLine:
+    """The line of a ray with b = 0, as a space if it is rational."""
+    point = rational_point(ray)
+    return shown.algebraic(ray) if point is None else shown.space(echelon([point]))
 
 
 def pleat_spaces(spaces: Iterable[Space]) -> list[tuple[Row, ...]]:

@@ -177,7 +177,8 @@ def test_rational_solutions_that_are_not_guessed_from_floats_are_in_the_certific
     assert "Groebner" in result.reason
     claims = checker.check(periodic_certificate(result))
     assert (claims["distinct"], claims["with_multiplicity"]) == (5, 6)
-    assert len(claims["pleats"]) == 1
+    assert [line.to_dict() for line in result.pleats] == claims["pleats"]
+    assert claims["pleats"] == [{"dimension": 1, "basis": [["0", "0", "1", "1/2", "0"]]}]
 
 
 def test_no_certificate_states_a_pleat_in_a_larger_field(monkeypatch: pytest.MonkeyPatch) -> None:
