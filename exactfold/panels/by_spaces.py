@@ -44,7 +44,7 @@ def by_spaces(pattern: PanelPattern, moving: Mapping[int, Star], clock: Clock = 
 
     The dimension of the first-order motions is exact. The part is not decomposed if several forms
     remain on a space and are not shown to be one component, if splitting the spaces takes more than
-    `MOST_STEPS` steps, or if it takes more than five sixths of the time of the clock. Then the
+    `MOST_STEPS` steps, or if it takes more than nine tenths of the time of the clock. Then the
     components are counted if the vertices form a tree. Otherwise the result contains the components
     that were found, and the folds that stay flat to second order.
     """
@@ -134,7 +134,7 @@ def _complete(
     vertices = tuple(moving)
     (rows, size), (small, left) = first, smaller
     many = sum(star.hole is not None for star in moving.values()) > _MANY
-    search = Splitting(moving, MOST_STEPS, clock.share(1 / 8 if many else 5 / 6))
+    search = Splitting(moving, MOST_STEPS, clock.share(1 / 8 if many else 9 / 10))
     leaves = search.leaves(small, left)
     together = 0
     counts: dict[int, int] = {}
