@@ -9,7 +9,7 @@ from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from exactfold._support.clock import Clock
 from exactfold._support.memory import is_shortage, shortage
@@ -87,6 +87,10 @@ class Tally:
     def note(self) -> str:
         """The numbers of files that are not proved, for the progress line."""
         return "".join(f", {n} {s}" for s in STATUSES[1:] if (n := self.statuses[s]))
+
+
+_SEVERAL: Final = 4 / 5
+"""The share of the time that the sheets of one drawing have; the rest is for reading them again."""
 
 
 class Batch(CountOptions):
@@ -174,7 +178,8 @@ class Batch(CountOptions):
             clocks: dict[Path, Clock] = {}
             for part in self._parts:
                 source = _source(part.path)
-                limit = self._share(clocks.setdefault(part.path, Clock(self.limit)), part.left)
+                whole = Clock(self.limit).share(1 if part.left == 1 else _SEVERAL)
+                limit = self._share(clocks.setdefault(part.path, whole), part.left)
                 reading = replace(part.reading, limit=limit)
                 job = Job(part.name, source, self.method, self.seed, reading, limit)
                 earlier_line = known.take(job, names)
