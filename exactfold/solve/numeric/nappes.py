@@ -120,7 +120,7 @@ def few_ends(gauge: Gauge, all_signs: Iterable[Sequence[int]]) -> tuple[list[lis
     >>> from exactfold.pattern.families import single_vertex
     >>> ends, steps = few_ends(Gauge.of(single_vertex(4)), [[1], [-1]])
     >>> [[round(x, 6) for x in end] for end in ends]
-    [[0.603553], [-0.103553]]
+    [[0.5], [-0.144043]]
     """
     rows = nappes(gauge)
     lines, roots = [nappe.float_line for nappe in rows], [nappe.float_root for nappe in rows]
