@@ -25,7 +25,7 @@ from exactfold.app.viewer.checking import PageChecker, page_checker, policy_sour
 from exactfold.app.viewer.page import checked_page, write_view
 from exactfold.app.viewer.rolling import write_rolling_view
 from exactfold.certificates.entries import certificate_text
-from exactfold.errors import UsageError
+from exactfold.errors import NotApplicableError, UsageError
 from exactfold.motion.periodic.patch import CELLS
 from exactfold.pattern.opening import Opened, is_cell_file
 
@@ -71,7 +71,11 @@ class Wanted(ViewOptions):
         if self.pyodide is None:
             return None
         policy_source(self.pyodide)  # before the work
-        certificate = count(opened, limit=self.limit).certificate()
+        try:
+            certificate = count(opened, limit=self.limit).certificate()
+        except NotApplicableError as error:
+            reason = f"--with-checker: {error}; without it the page can be written"
+            raise NotApplicableError(reason) from None
         return page_checker(certificate_text(certificate), self.pyodide)
 
     def _rolling(self, output: Path, name: str, clock: Clock) -> None:

@@ -13,13 +13,14 @@ from pathlib import Path
 
 import pytest
 from browser import chromium
+from running import run
 
 import exactfold
 from exactfold.app.viewer.checking import MOST_BYTES, page_checker, policy_source
 from exactfold.app.viewer.document import view_document
 from exactfold.app.viewer.page import view_page
 from exactfold.certificates.entries import certificate_text
-from exactfold.errors import UsageError
+from exactfold.errors import NotApplicableError, UsageError
 
 PYODIDE = Path(os.environ.get("NODE_PATH", ""), "pyodide")
 
@@ -93,6 +94,22 @@ def test_other_addresses_are_refused(address):
 def test_a_certificate_that_is_too_long_for_a_page_is_refused():
     with pytest.raises(UsageError, match="exactfold check"):
         page_checker(" " * (MOST_BYTES + 1), "pyodide")
+
+
+def test_a_count_without_a_certificate_is_refused_by_the_name_of_the_option(tmp_path, monkeypatch):
+    monkeypatch.setattr("exactfold.app.commands.view.count", lambda *_, **__: Uncertified())
+    page = tmp_path / "page.html"
+    result = run("view", "single-vertex-4", "--with-checker", "pyodide", "-o", page)
+    assert "--with-checker: nothing is proved; without it" in " ".join(result.stderr.split())
+    assert result.exit_code == 2
+    assert not page.exists()
+
+
+class Uncertified:
+    """A count of which nothing is proved."""
+
+    def certificate(self):
+        raise NotApplicableError("nothing is proved")
 
 
 @pytest.mark.slow
