@@ -27,7 +27,7 @@ from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_ma
 from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.groebner_bases import classes_of_ideal, groebner
 from exactfold.solve.algebraic.no_zeros import only_zero, roots_modulo
-from exactfold.solve.algebraic.quotient import SparsePolynomial
+from exactfold.solve.algebraic.quotient import sparse_quadrics
 
 MOST_UNKNOWNS: Final = 8
 """The most unknowns of a system that is solved exactly."""
@@ -130,7 +130,7 @@ class Crossings:
             if found.dimension is not None:
                 return found.classes
         else:
-            classes = classes_of_ideal([_sparse(matrix) for matrix in matrices], size)
+            classes = classes_of_ideal(sparse_quadrics(system), size)
             if classes is not None:
                 for zeros in classes:
                     zeros.verify(system)
@@ -193,15 +193,3 @@ def _reduced(star: FlatStar, zeros: RootClass, prime: int, root: int) -> list[in
         sum(int(c * scale) * value for c, value in zip(row, values, strict=True)) % prime
         for row in star.lift
     ]
-
-
-def _sparse(matrix: Sequence[Sequence[int]]) -> SparsePolynomial:
-    """The quadric of a symmetric matrix on (y, 1)."""
-    size = len(matrix) - 1
-    terms: dict[tuple[int, ...], int] = {}
-    for i in range(size + 1):
-        for j in range(i + 1):
-            value = matrix[i][j] * (1 + (i != j))
-            if value:
-                terms[tuple((k == i) + (k == j) for k in range(size))] = value
-    return terms

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Final
 
+import numpy as np
 from flint import fmpz
 
-from exactfold.branches.periodic.exactly import ExactRay
+from exactfold._support.arrays import FloatArray
+from exactfold.branches.periodic.exactly import ExactRay, rays_on
+from exactfold.branches.periodic.spaces import (
+    Cover,
+    Spaces,
+    combined,
+    dot,
+    identity,
+    image,
+    summed,
+)
+from exactfold.exact.linalg import nullspace
+from exactfold.rigidity.equations.periodic import PeriodicProblem, Row
 
 Pair = tuple[Fraction, Fraction]
+
+_SMALL: Final = 1e-6
+"""The b of a unit vector below which it is taken for 0."""
 
 
 @dataclass(frozen=True)
@@ -20,6 +37,11 @@ class QuadraticLine:
     radicand: int
     point: tuple[Pair, ...]
     ray: ExactRay
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """The signs of all vertices."""
+        return self.ray.signs
 
     @classmethod
     def of(cls, ray: ExactRay) -> QuadraticLine | None:
@@ -35,6 +57,33 @@ class QuadraticLine:
         point = [_at(entry, root, radicand) for entry in ray.entries]
         first = next(pair for pair in point if any(pair))
         return cls(radicand, tuple(_over(pair, first, radicand) for pair in point), ray)
+
+    def is_component(self, problem: PeriodicProblem) -> bool:
+        """Whether it is a component of the solutions: its space Z is the line (Theorem 17).
+
+        A vector p + q sqrt(radicand) is the rational vector (p, q), of twice the length.
+        """
+        one, other = ([pair[k] for pair in self.point] for k in (0, 1))
+        flat = [
+            v
+            for v, rows in enumerate(problem.bends_at)
+            if not any(dot(row, part) for row in rows for part in (one, other))
+        ]
+        forms = [star.form for star in problem.stars]
+        normal = identity(2 * len(one))
+        rows = [r for v, f in enumerate(forms) if v not in flat for r in self._polar(f, one, other)]
+        if rows:
+            normal = [list(c) for c in nullspace(rows)]
+        half, sums = len(one), []
+        for c in normal if flat else []:
+            for row in self._polar(summed([forms[v] for v in flat]), c[:half], c[half:]):
+                sums.append([dot(row, a) for a in normal])
+        return (len(nullspace(sums)) if sums else len(normal)) == 2
+
+    def _polar(self, form: Sequence[Row], one: Row, other: Row) -> list[Row]:
+        """Rows on (p, q) that are both 0 where the polar form with a vector is 0."""
+        whole, roots = image(form, one), image(form, other)
+        return [(*whole, *(self.radicand * x for x in roots)), (*roots, *whole)]
 
 
 def rational_point(ray: ExactRay) -> tuple[Fraction, ...] | None:
@@ -53,11 +102,38 @@ def covering(
     lines = [line for line in map(QuadraticLine.of, rays) if line is not None]
     used: dict[int, None] = {}
     for signs in missing:
-        place = next((k for k, line in enumerate(lines) if agree(line.ray.signs, signs)), None)
+        place = next((k for k, line in enumerate(lines) if agree(line.signs, signs)), None)
         if place is None:
             return None
         used[place] = None
     return tuple(lines[k] for k in used)
+
+
+def solved_near(
+    spaces: Spaces, ray: FloatArray, known: dict[tuple[frozenset[int], int], list[ExactRay]]
+) -> Iterator[Cover | QuadraticLine]:
+    """Components of the solutions that may hold a ray in floats at which vertices are flat.
+
+    On the heights at which these vertices are flat, all solutions are found exactly, with b other
+    than 0 if the ray has it. `known` keeps what was solved before.
+    """
+    problem = spaces.problem
+    for flat in filter(None, spaces.flat_near(ray)):
+        level = spaces.level(flat)
+        place = len(ray) - 1
+        if abs(ray[-1]) < _SMALL:
+            place = int(np.abs(ray[:-1]).argmax())
+            weights = nullspace([[row[-1] for row in level]]) if level else []
+            level = tuple(combined(w, level) for w in weights)
+        if (flat, place) not in known:
+            chart = tuple(identity(len(ray))[place])
+            known[flat, place] = rays_on(problem, level, chart)
+        for exact in known[flat, place]:
+            point, line = rational_point(exact), QuadraticLine.of(exact)
+            if point is not None and (cover := spaces.at(point)) is not None:
+                yield cover
+            elif line is not None and line.is_component(problem):
+                yield line
 
 
 def agree(signs: Sequence[int], given: Sequence[float]) -> bool:
