@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from compact_files import Lines, bodies, chained, listed_exactly, put, raw
+from compact_files import Lines, bodies, chained, chained_texts, listed_exactly, put, raw
 
 from exactfold import checker
 from exactfold.branches import branch_certificate, find_branch
+from exactfold.branches.counting.stream import stream_branches
 from exactfold.pattern.crease_pattern import CreasePattern
 
 ROOT = Path(__file__).parent.parent.parent
@@ -22,10 +23,17 @@ COMPACT = sorted(CERTIFICATES.glob("compact-*.txt"))
 BRANCHES = sorted(CERTIFICATES.glob("branch-*.json"))
 CONVEX = CERTIFICATES / "compact-convex.txt"
 RANDOM = CERTIFICATES / "branch-random.json"
+NOTCHED = CreasePattern(
+    [(0, 0), (96, 3), (20, 90), (50, 54), (52, 39), (65, 18), (37, 18), (33, 69)],
+    [
+        *((0, 1, 6), (1, 2, 3), (1, 5, 6), (4, 6, 5), (1, 3, 5)),
+        *((3, 4, 5), (2, 7, 3), (0, 6, 7), (4, 7, 6), (3, 7, 4)),
+    ],
+)
+"""A sheet with four corners, of which vertex 7 is reflex, and four vertices inside."""
 OUT_OF_SCOPE = (
     "only version 1 of",
     "triangulated triangles, which are not in the scope",
-    "is reflex: the formal proof is about convex sheets",
     "heights with positive curvatures are verified here",
 )
 """Why a certificate that the checker in Python verifies is refused here."""
@@ -68,7 +76,10 @@ def test_both_checkers_agree_on_every_fixture(verifier: Path) -> None:
         else:
             assert code == 3, (path.name, text)
             assert any(reason in text for reason in OUT_OF_SCOPE), (path.name, text)
-    assert len(accepted) >= 12
+    assert len(accepted) >= 15
+    assert {"compact-dart.txt", "compact-reflex-either-side.txt", "branch-dart.json"} <= set(
+        accepted
+    )
 
 
 def compact_forgeries() -> dict[str, Callable[[Lines], object]]:
@@ -157,6 +168,126 @@ def test_forged_certificates_of_all_branches_are_refused(verifier: Path, tmp_pat
     assert (code, "line 3 is cut off or was altered" in text) == (1, True)
 
 
+@pytest.fixture(scope="module")
+def notch(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The certificate of all branches of `NOTCHED`."""
+    path = tmp_path_factory.mktemp("notch") / "notch.txt"
+    stream_branches(NOTCHED, path)
+    return path
+
+
+@pytest.mark.slow
+def test_a_sheet_with_a_reflex_corner(verifier: Path, notch: Path) -> None:
+    assert valid(notch) is not None
+    code, text = run(verifier, notch)
+    assert code == 0
+    assert "4 inside and 4 on the boundary, 10 triangles, 13 folds" in text
+    assert "exactly 16 branches" in text
+    assert "theorem all_notched_verified" in text
+    assert "the side on which vertex 7 pops up" in text
+    assert "not verified here: that the chart of the file names this side" in text
+
+
+def notch_forgeries() -> dict[str, Callable[[Lines], object]]:
+    """Changes of the certificate of `NOTCHED` that are refused, with what is said of each."""
+
+    def chart(**weights: str | None) -> Callable[[Lines], object]:
+        def change(lines: Lines) -> None:
+            new = lines[0]["evidence"]["chart"] | {k[1:]: w for k, w in weights.items()}
+            lines[0]["evidence"]["chart"] = {k: w for k, w in new.items() if w is not None}
+
+        return change
+
+    def other_side(lines: Lines) -> None:
+        chart = lines[0]["evidence"]["chart"]
+        for v, weight in chart.items():
+            chart[v] = weight[1:] if weight[0] == "-" else "-" + weight
+
+    def letters(lines: Lines) -> None:
+        folds = raw(lines[1], "folds")
+        folds[2 * 5] ^= 1
+        put(lines[1], "folds", folds)
+
+    def no_chart(lines: Lines) -> None:
+        lines[0]["evidence"]["chart"] = None
+
+    return {
+        "the chart is not that of the closed notch": no_chart,
+        'the key "1" is not known': chart(v1="1"),
+        "the chart does not fix the height of the reflex corner": chart(v7=None),
+        "a weight of the chart is no rational number": chart(v7="1/0"),
+        "NOT VERIFIED  root 15 did not pass the test": other_side,
+        "NOT VERIFIED  root 5 did not pass the test": letters,
+        'the claim "distinct" is 32': lambda lines: lines[-1]["claims"].update(distinct=32),
+        'the claim "interior" is 5': lambda lines: lines[-1]["claims"].update(interior=5),
+        'the claim "boundary" is 3': lambda lines: lines[-1]["claims"].update(boundary=3),
+    }
+
+
+@pytest.mark.slow
+def test_forged_certificates_with_a_reflex_corner_are_refused(
+    verifier: Path, notch: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "forged.txt"
+    for said, change in notch_forgeries().items():
+        lines = bodies(notch.read_bytes())
+        change(lines)
+        path.write_bytes(chained(lines))
+        code, text = run(verifier, path)
+        assert code in (1, 3), said
+        assert said in text, (said, text)
+        assert valid(path) is None, said
+    lines = bodies(notch.read_bytes())
+    chart = lines[0]["evidence"]["chart"]
+    twice = json.dumps(chart)[:-1] + ', "7": "1"}'
+    text = json.dumps(lines[0]).replace(json.dumps(chart), twice)
+    path.write_bytes(chained_texts([text, *map(json.dumps, lines[1:])]))
+    code, text = run(verifier, path)
+    assert (code, '"7" is missing, or given twice' in text) == (3, True)
+
+
+@pytest.mark.slow
+def test_one_branch_with_a_reflex_corner(verifier: Path, tmp_path: Path) -> None:
+    path = tmp_path / "branch.json"
+    given = branch_certificate(find_branch(NOTCHED, "+--+"))
+
+    def checked(changed: dict[str, Any]) -> tuple[int, str]:
+        path.write_text(json.dumps(changed), encoding="utf-8")
+        assert (valid(path) is None) == (changed is not given)
+        return run(verifier, path)
+
+    code, text = checked(given)
+    assert (code, "theorem one_notched_verified" in text) == (0, True)
+    assert "exactly one branch lies" in text
+    claims, evidence = given["claims"], given["evidence"]
+    code, text = checked(negated(given))
+    assert (code, "the branch did not pass the test" in text) == (1, True)
+    lifted = ["1", *evidence["heights"][1:]]
+    code, text = checked(given | {"evidence": evidence | {"heights": lifted}})
+    assert (code, "are not all at height 0" in text) == (1, True)
+    code, text = checked(given | {"claims": claims | {"gauge": "rim"}})
+    assert (code, "needs a convex boundary" in text) == (1, True)
+    letters = claims["assignment"]
+    other = letters[:-1] + {"M": "V", "V": "M"}[letters[-1]]
+    code, text = checked(given | {"claims": claims | {"assignment": other}})
+    assert (code, "the branch did not pass the test" in text) == (1, True)
+    code, text = checked(given | {"claims": claims | {"vertex_signs": [1, 1, -1, 1]}})
+    assert (code, "the branch did not pass the test" in text) == (1, True)
+
+
+@pytest.mark.slow
+def test_a_reflex_corner_needs_three_others(verifier: Path, tmp_path: Path) -> None:
+    given = json.loads((CERTIFICATES / "branch-rim.json").read_text(encoding="utf-8"))
+    points = [["0", "0"], ["4", "0"], ["4", "4"], ["1", "2"], ["0", "4"], ["2", "1"]]
+    faces = [[0, 1, 5], [1, 2, 5], [2, 3, 5], [3, 4, 5], [4, 0, 5]]
+    path = tmp_path / "five.json"
+    given["pattern"] = {"vertices": points, "triangles": faces}
+    path.write_text(json.dumps(given), encoding="utf-8")
+    code, text = run(verifier, path)
+    assert (code, "the corner at vertex 3 is reflex, of 5" in text) == (3, True)
+    assert valid(path) is None
+
+
 @pytest.mark.slow
 def test_forged_certificates_of_one_branch_are_refused(verifier: Path, tmp_path: Path) -> None:
     given = json.loads(RANDOM.read_text(encoding="utf-8"))
@@ -227,13 +358,13 @@ def negated(branch: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def check_mutations(verifier: Path, path: Path, count: int, seed: int) -> None:
+def check_mutations(verifier: Path, given: Path, path: Path, count: int, seed: int) -> None:
     """A changed letter is refused; changed digits of heights change nothing that is proved."""
     rng = random.Random(seed)
-    whole = bodies(CONVEX.read_bytes())
-    shown = run(verifier, CONVEX)[1]
+    whole = bodies(given.read_bytes())
+    shown = run(verifier, given)[1]
     for _ in range(count):
-        lines = bodies(CONVEX.read_bytes())
+        lines = bodies(given.read_bytes())
         letters = rng.random() < 0.5
         data = raw(lines[1], "folds" if letters else "centers")
         place = rng.randrange(len(data))
@@ -250,13 +381,17 @@ def check_mutations(verifier: Path, path: Path, count: int, seed: int) -> None:
 
 
 @pytest.mark.slow
-def test_changed_letters_and_heights(verifier: Path, tmp_path: Path) -> None:
-    check_mutations(verifier, tmp_path / "changed.txt", 100, seed=1)
+def test_changed_letters_and_heights(verifier: Path, notch: Path, tmp_path: Path) -> None:
+    check_mutations(verifier, CONVEX, tmp_path / "changed.txt", 100, seed=1)
+    check_mutations(verifier, notch, tmp_path / "changed.txt", 50, seed=3)
 
 
 @pytest.mark.survey
-def test_two_thousand_changed_letters_and_heights(verifier: Path, tmp_path: Path) -> None:
-    check_mutations(verifier, tmp_path / "changed.txt", 2000, seed=2)
+def test_two_thousand_changed_letters_and_heights(
+    verifier: Path, notch: Path, tmp_path: Path
+) -> None:
+    check_mutations(verifier, CONVEX, tmp_path / "changed.txt", 2000, seed=2)
+    check_mutations(verifier, notch, tmp_path / "changed.txt", 2000, seed=4)
 
 
 @pytest.mark.slow

@@ -14,4 +14,5 @@ Extract Inlined Constant Z.ltb => "Integer.lt".
 Extract Inlined Constant Z.leb => "Integer.leq".
 Extract Inlined Constant Z.eqb => "Integer.equal".
 
-Extraction "verified.ml" verify_all verify_one sound passes measured is_bent.
+Extraction "verified.ml" verify_all verify_one verify_all_notched verify_one_notched sound closes passes raised_passes
+  measured is_bent.

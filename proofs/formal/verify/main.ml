@@ -4,8 +4,8 @@ open Reading
 module V = Verified
 
 let usage = "usage: exactfold-verify FILE\n\n\
-  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a convex\n\
-  triangulated sheet, and says what of the file it does not verify.\n\
+  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a triangulated\n\
+  sheet that is convex, or has four corners of which one is reflex, and says what of the file it does not verify.\n\
   Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
   70 a defect, or memory is short.\n"
 
@@ -16,17 +16,32 @@ let plural n word =
 let not_verified text = Printf.printf "not verified here: %s\n" text
 let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
 
-(* The drawing and the numbered folds that are proposed are those of the file. *)
-let belongs sheet (d : V.drawing) (p : V.prepared) =
+(* The drawing and the numbered folds that are proposed are those of the file; with a reflex corner the first
+   triangle of the drawing is one more. *)
+let belongs sheet corner (d : V.drawing) (p : V.prepared) =
   let numbered = List.mapi (fun name (i, j, l, m) -> (name, (((i, j), l), m))) (Array.to_list (folds sheet)) in
-  if d.points <> Array.to_list sheet.points || d.triangles <> List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles
+  let triangles = if corner = None then d.triangles else List.tl d.triangles in
+  if d.points <> Array.to_list sheet.points || triangles <> List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles
     || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
   then failwith "the sheet that is proposed is not that of the file"
 
-let shown_sheet sheet (d : V.drawing) =
+(* The vertices inside the sheet of the file, and the number of those on its boundary. *)
+let parts corner (d : V.drawing) =
+  let inside = List.filter (fun v -> corner <> Some v) d.inside in
+  (Array.of_list (List.rev inside), List.length d.border + List.length d.inside - List.length inside)
+
+let shown_sheet sheet corner (d : V.drawing) =
+  let inside, rim = parts corner d in
   Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
-    (plural (Array.length sheet.points) "vertex") (List.length d.inside) (List.length d.border)
+    (plural (Array.length sheet.points) "vertex") (Array.length inside) rim
     (plural (List.length sheet.triangles) "triangle") (plural (Array.length (folds sheet)) "fold") sheet.digest
+
+let sound d p = function
+  | None -> V.sound d p
+  | Some r -> V.sound d p && V.closes d r
+
+let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
+  \          closes the notch.\n" r
 
 (* --- all branches --- *)
 
@@ -78,6 +93,22 @@ let block size folds number length data =
         letters = fun k -> Some (bit index k) }
     | _ -> invalid "root %d of block %d is given twice or not at all" index number
 
+(* The chart of a sheet with a reflex corner: the height of this corner, in units of 2^-bits, over the heights of
+   the vertices inside, so that a functional of both is 1. *)
+let notch_chart j corner inside =
+  let vertices = corner :: Array.to_list inside in
+  only (String.concat " " (List.map string_of_int vertices)) j;
+  let names = match j with Entries pairs -> List.map fst pairs | _ -> refuse "the chart is not that of the closed notch" in
+  let weights = List.filter_map (fun v -> let name = string_of_int v in
+    if List.mem name names then Some (v, rational "a weight of the chart" (entry name j)) else None) vertices in
+  let unit = List.fold_left (fun n (_, (_, q)) -> Z.lcm n q) Z.one weights in
+  let whole = List.map (fun (v, (p, q)) -> (v, Z.mul p (Z.div unit q))) weights in
+  let lead = match List.assoc_opt corner whole with
+    | Some w when not (Z.equal w Z.zero) -> w
+    | _ -> refuse "the chart does not fix the height of the reflex corner" in
+  let rest h = List.fold_left (fun s (v, w) -> if v = corner then s else Z.add s (Z.mul w h.(v))) Z.zero whole in
+  fun h bits -> Z.div (Z.sub (Z.shift_left unit bits) (rest h)) lead
+
 let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
 
 let all_branches header blocks claims =
@@ -90,17 +121,21 @@ let all_branches header blocks claims =
   let sheet = sheet (entry "pattern" header) in
   if items "triangles" (entry "triangles" evidence) <> [] then
     refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
-  let d = Proposing.drawing sheet in
-  if entry "chart" evidence <> Null then refuse "the chart is one of a sheet with a reflex corner";
-  let inside = Array.of_list (List.rev d.inside) in
+  let closed, corner = Proposing.closed sheet in
+  let d = Proposing.drawing closed in
+  let inside, rim = parts corner d in
   let size = Array.length inside in
-  if List.length d.border <> 4 then refuse "the sheet has %d boundary vertices, not four" (List.length d.border);
+  if rim <> 4 then refuse "the sheet has %d boundary vertices, not four" rim;
   if size = 0 || size > 30 then refuse "%d vertices inside: between 1 and 30 are verified" size;
+  let lifted = match corner, entry "chart" evidence with
+    | None, Null -> None
+    | None, _ -> refuse "the chart is one of a sheet with a reflex corner"
+    | Some r, chart -> Some (notch_chart chart r inside) in
   let length = small ~least:1 "block" (entry "block" evidence) in
   if 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
-  shown_sheet sheet d;
+  shown_sheet sheet corner d;
   let p = Proposing.prepared sheet d in
-  belongs sheet d p;
+  belongs sheet corner d p;
   let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
   let claim key = Z.to_string (Z.of_int (small key (entry key claims))) in
   List.iter (fun (key, expected) -> agrees key (claim key) expected)
@@ -112,8 +147,7 @@ let all_branches header blocks claims =
   let blocks = Array.of_list blocks in
   let slot = Array.make (Array.length sheet.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
-  let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) and rough = Proposing.rough p in
-  let unit = List.nth d.border 3 in
+  let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) and rough = Proposing.rough corner p in
   let number e = let n = ref 0 in Array.iteri (fun k v -> if not (e v) then n := !n lor (1 lsl k)) inside; !n in
   let now = ref (-1, fun _ -> assert false) in
   let root n =
@@ -124,8 +158,13 @@ let all_branches header blocks claims =
     let shift = bits - root.bits in
     Array.iteri (fun k v -> let c = root.center.(k) in
       h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
-    h.(unit) <- Z.shift_left Z.one bits;
+    (match lifted, corner with
+    | Some height, Some r -> h.(r) <- height h bits
+    | _ -> h.(List.nth d.border 3) <- Z.shift_left Z.one bits);
     h in
+  let passes e h letters = match corner with
+    | None -> V.passes p (fun _ -> false) e (fun u -> h.(u)) letters
+    | Some r -> V.raised_passes d p r e (fun u -> h.(u)) letters in
   let current = ref (-1) and flat = ref 0 in
   (* What is proposed for a sign vector: with more and more digits, until floating point, or if careful the
      verified test itself, finds all letters decided. It depends on the sign vector alone, and its array is
@@ -146,8 +185,8 @@ let all_branches header blocks claims =
             let h = heights root bits in
             if not (careful || more = [] || Proposing.clear rough h bits aim) then refine more
             else begin
-              for _ = 0 to (bits - 40) / 40 do Proposing.step lights h bits aim done;
-              if careful && not (V.passes p e (fun u -> h.(u)) root.letters) then refine more else h
+              for _ = 0 to (bits - 40) / 40 do Proposing.step lights corner h bits aim done;
+              if careful && not (passes e h root.letters) then refine more else h
             end in
         let h = refine precisions in
         let done_ = (1 lsl size) - n in
@@ -155,22 +194,27 @@ let all_branches header blocks claims =
         flat := !flat + root.flat;
         proposed := (n, h, root.letters)
       end in
-    let top e = propose e; let _, h, _ = !proposed in h.(unit) in
+    let top e = propose e; let _, h, _ = !proposed in h.(List.nth d.border 3) in
     let given e = propose e; let _, h, _ = !proposed in fun u -> h.(u) in
     let asked e = propose e; let _, _, letters = !proposed in letters in
-    try V.verify_all d p top given asked with Exit -> false in
-  if not (V.sound d p) then unverified "the sheet is not a convex triangulated one";
+    try match corner with
+      | None -> V.verify_all d p top given asked
+      | Some r -> V.verify_all_notched d p r given asked
+    with Exit -> false in
+  if not (sound d p corner) then unverified "the sheet is not a convex triangulated one, nor one with a notch";
   if not (verify false || verify true) then begin
     let n = !current in
-    if n >= 0 then List.iter (fun (b : V.hub) -> if not (V.is_bent (root n).letters b) then
+    if n >= 0 then List.iter (fun (b : V.hub) -> if corner <> Some b.at_vertex && not (V.is_bent (root n).letters b) then
       refuse "root %d: vertex %d has no fold with the letter M or V" n b.at_vertex) p.V.hubs;
     unverified "root %d did not pass the test" n
   end;
   if size > 13 then prerr_newline ();
   Printf.printf "VERIFIED  exactly %s branches to second order, complex ones included; all are real and\n\
     \          simple, one for each sign vector; their folds have the letters M and V of the file.\n\
-    \          By theorem all_verified.\n" count;
+    \          By theorem %s.\n" count (if corner = None then "all_verified" else "all_notched_verified");
+  Option.iter raised corner;
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
+  if corner <> None then not_verified "that the chart of the file names this side of each branch";
   not_verified "that every branch continues to a true motion"
 
 (* --- one branch --- *)
@@ -196,13 +240,14 @@ let one_branch data =
   let sheet = sheet (entry "pattern" data) in
   if items "emptied" (entry "emptied" evidence) <> [] then
     refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
-  let d = Proposing.drawing sheet in
-  shown_sheet sheet d;
+  let closed, corner = Proposing.closed sheet in
+  let d = Proposing.drawing closed in
+  shown_sheet sheet corner d;
   let p = Proposing.prepared sheet d in
-  belongs sheet d p;
+  belongs sheet corner d p;
   let h = Array.of_list (List.map (whole "a height") (items "heights" (entry "heights" evidence))) in
   if Z.leq (whole "denominator" (entry "denominator" evidence)) Z.zero then invalid "the denominator is not positive";
-  let inside = Array.of_list (List.rev d.V.inside) in
+  let inside, _ = parts corner d in
   let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
   let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
   if Array.length h <> Array.length sheet.points || Array.length signs <> Array.length inside then
@@ -210,11 +255,16 @@ let one_branch data =
   let gauge = string "gauge" (entry "gauge" claims) in
   if gauge = "saddle" then begin
     match d.border with
+    | [ _; _; _ ] when corner <> None ->
+      if List.exists (fun v -> not (Z.equal h.(v) Z.zero)) d.border then
+        invalid "the boundary vertices other than the reflex corner are not all at height 0"
     | [ w; x; y; z ] -> if not (positive_saddle sheet (w, x, y, z) h) then invalid "the boundary saddle is not positive"
     | _ -> invalid "the gauge \"saddle\" needs four boundary vertices"
   end
-  else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim";
+  else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim"
+  else if corner <> None then invalid "the gauge \"rim\" needs a convex boundary";
   let claimed = Hashtbl.create 64 in
+  Option.iter (fun r -> Hashtbl.replace claimed r 1) corner;
   Array.iteri (fun k v -> Hashtbl.replace claimed v signs.(k)) inside;
   (* a vertex that is claimed to be flat lies in both closed nappes: the test is made in that of the heights *)
   let ups = Array.make (Array.length h) false in
@@ -227,18 +277,24 @@ let one_branch data =
   let text = string "assignment" (entry "assignment" claims) in
   if String.length text <> List.length p.V.folds then refuse "the number of letters is wrong";
   let letters = letter_of 0 text in
-  if not (V.sound d p) then unverified "the sheet is not a convex triangulated one";
-  if not (V.verify_one d p (fun v -> ups.(v)) (fun u -> h.(u)) letters) then unverified "the branch did not pass the test";
-  let bent = List.filter (V.is_bent letters) p.V.hubs in
+  if not (sound d p corner) then unverified "the sheet is not a convex triangulated one, nor one with a notch";
+  let up v = ups.(v) and given u = h.(u) in
+  if not (match corner with
+    | None -> V.verify_one d p up given letters
+    | Some r -> V.verify_one_notched d p r up given letters) then unverified "the branch did not pass the test";
+  let bent = List.filter (fun (b : V.hub) -> corner <> Some b.at_vertex && V.is_bent letters b) p.V.hubs in
   List.iter (fun (b : V.hub) -> if Hashtbl.find claimed b.at_vertex = 0 then
     invalid "vertex %d has the sign 0, but a fold with a letter M or V" b.at_vertex) bent;
   let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) 0 signs in
   let others = Array.length inside - List.length bent and flat = flats text in
-  Printf.printf "VERIFIED  exactly one solution over these boundary heights lies in the closed nappes of %s.\n\
+  Printf.printf "VERIFIED  exactly one %s lies in the closed nappes of %s.\n\
     \          It has the letters M and V of the file, and the signs of the %s where they\n\
-    \          end. By theorem one_verified.\n"
+    \          end. By theorem %s.\n"
+    (if corner = None then "solution over these boundary heights" else "branch")
     (if zeros = 0 then "these signs" else "these signs,\n          at vertices with the sign 0 those of the heights")
-    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex");
+    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex")
+    (if corner = None then "one_verified" else "one_notched_verified");
+  Option.iter raised corner;
   if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
   if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
   not_verified "the squared distance"
