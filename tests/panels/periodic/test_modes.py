@@ -133,6 +133,8 @@ def test_diagonals_are_edges_and_are_written() -> None:
     assert read_cell(cell_document(cell)) == cell
     with pytest.raises(MalformedPatternError, match=r"0-3 moved by \(5, 0\) is no edge"):
         PeriodicPattern(cell.lattice, cell.points, cell.faces, [(0, 3, 5, 0)])
+    with pytest.raises(MalformedPatternError, match=r"0-3 moved by \(an integer of 16610 bits, 0"):
+        PeriodicPattern(cell.lattice, cell.points, cell.faces, [(0, 3, 10**5000, 0)])
     with pytest.raises(MalformedPatternError, match=r"not \[u, v, i, j\]"):
         PeriodicPattern(cell.lattice, cell.points, cell.faces, [(0, 3)])
     turned = [(v, u, -i, -j) for u, v, i, j in cell.diagonals]
