@@ -86,7 +86,7 @@ def count_periodic(
     covers, lines = _covered(problem, rays, missing, clock)
     result = _result(problem, rays, proved, covers, lines)
     if result.status is not PROVED and not clock.passed:
-        exact = exact_rays(problem)
+        exact = exact_rays(problem, clock)
         if exact is not None:
             left = [rays.signs[row].tolist() for row in missing]
             left = [s for s in left if not any(agree(cover.signs, s) for cover in covers)]

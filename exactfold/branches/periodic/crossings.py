@@ -19,8 +19,10 @@ from typing import Final
 from flint import nmod_poly
 
 from exactfold._support.clock import Clock
+from exactfold.branches.periodic.directions_result import ExactDirection
 from exactfold.branches.values.roots import AlgebraicRoot
-from exactfold.exact.numbers import integer_row
+from exactfold.errors import NotApplicableError
+from exactfold.exact.numbers import integer_row, over_common_denominator
 from exactfold.rigidity.equations.all_directions import AllDirections, FlatStar
 from exactfold.rigidity.equations.periodic import Row
 from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_matrices
@@ -32,6 +34,7 @@ from exactfold.solve.algebraic.quotient import sparse_quadrics
 MOST_UNKNOWNS: Final = 8
 """The most unknowns of a system that is solved exactly."""
 _PRIMES: Final = 3
+_ZERO: Final = Fraction(0)
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,25 @@ class RealPlace:
             return None
         ends = [a / b for a in top for b in low]
         return min(ends), max(ends)
+
+    def direction(self, problem: AllDirections) -> ExactDirection:
+        """The direction of the cylinder, as polynomials in the root."""
+        c_11, c_12, c_22 = problem.bend_rows()
+        star, zeros = self.place.star, self.place.zeros
+        rows = (c_12, c_22) if self.sign(c_22) else (c_11, c_12)
+        slope = [Fraction(k * c) for k, c in enumerate(zeros.polynomial)][1:]
+        entries = [*zeros.numerators, tuple(slope)]
+        length = max(map(len, entries))
+        flat: list[Fraction] = []
+        for row in rows:
+            on_y = star.on_chart(row)
+            flat += [
+                sum((c * e[k] for c, e in zip(on_y, entries, strict=True) if k < len(e)), _ZERO)
+                for k in range(length)
+            ]
+        whole, _ = over_common_denominator(flat)
+        interval = self.root.interval(64)
+        return ExactDirection.of(zeros.polynomial, interval, whole[:length], whole[length:])
 
 
 class OpenVertexError(Exception):
@@ -123,10 +145,13 @@ class Crossings:
                 f"{size} unknowns are too many, at most {MOST_UNKNOWNS} are solved"
             )
         if self.clock.passed:
-            raise OpenVertexError(f"no answer after {self.clock.limit:g} seconds")
+            raise OpenVertexError(self.clock.said)
         system = QuadraticSystem(matrices)
         if len(forms) == size:
-            found = groebner(system)
+            try:
+                found = groebner(system, clock=self.clock)
+            except NotApplicableError as error:
+                raise OpenVertexError(str(error)) from None
             if found.dimension is not None:
                 return found.classes
         else:

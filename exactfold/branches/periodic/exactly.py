@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, cast
 
+from exactfold._support.clock import Clock
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import AlgebraicRoot
+from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.exact.numbers import integer_row
 from exactfold.rigidity.equations.periodic import PeriodicProblem, Row
@@ -38,12 +40,12 @@ class ExactRay:
     entries: tuple[tuple[Fraction, ...], ...]
 
 
-def exact_rays(problem: PeriodicProblem) -> list[ExactRay] | None:
+def exact_rays(problem: PeriodicProblem, clock: Clock) -> list[ExactRay] | None:
     """All rays, by a Groebner basis in a chart without solutions at infinity.
 
     None if there are more than `MOST_UNKNOWNS` unknowns, if a space has more dimensions than one,
-    or if every chart that is tried has solutions at infinity. The number of rays with multiplicity,
-    2^(V - 1), proves that they are all.
+    if every chart that is tried has solutions at infinity, or if the time is over. The number of
+    rays with multiplicity, 2^(V - 1), proves that they are all.
     """
     size = problem.size
     if not 0 < size <= MOST_UNKNOWNS:
@@ -62,7 +64,10 @@ def exact_rays(problem: PeriodicProblem) -> list[ExactRay] | None:
         system = QuadraticSystem.from_rational(
             [[[from_fmpq(x) for x in row] for row in form] for form in forms]
         )
-        solution = groebner(system)
+        try:
+            solution = groebner(system, clock=clock)
+        except NotApplicableError:
+            return None
         if solution.dimension is None:
             return None
         if solution.dimension == 1 << size:

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import Final
 
 import numpy as np
-from flint import fmpz
 
 from exactfold._support.arrays import FloatArray
 from exactfold.branches.periodic.exactly import ExactRay, rays_on
@@ -22,6 +21,7 @@ from exactfold.branches.periodic.spaces import (
     summed,
 )
 from exactfold.exact.linalg import nullspace
+from exactfold.exact.surds import split_square
 from exactfold.rigidity.equations.periodic import PeriodicProblem, Row
 
 Pair = tuple[Fraction, Fraction]
@@ -71,19 +71,33 @@ class QuadraticLine:
         ]
         forms = [star.form for star in problem.stars]
         normal = identity(2 * len(one))
-        rows = [r for v, f in enumerate(forms) if v not in flat for r in self._polar(f, one, other)]
+        rows = [
+            row
+            for v, form in enumerate(forms)
+            if v not in flat
+            for row in polar(form, [*one, *other], self.radicand)
+        ]
         if rows:
-            normal = [list(c) for c in nullspace(rows)]
-        half, sums = len(one), []
-        for c in normal if flat else []:
-            for row in self._polar(summed([forms[v] for v in flat]), c[:half], c[half:]):
-                sums.append([dot(row, a) for a in normal])
-        return (len(nullspace(sums)) if sums else len(normal)) == 2
+            normal = nullspace(rows)
+        if not flat:
+            return len(normal) == 2
+        total = summed([forms[v] for v in flat])
+        sums = [
+            [dot(row, a) for a in normal] for c in normal for row in polar(total, c, self.radicand)
+        ]
+        return len(nullspace(sums)) == 2
 
-    def _polar(self, form: Sequence[Row], one: Row, other: Row) -> list[Row]:
-        """Rows on (p, q) that are both 0 where the polar form with a vector is 0."""
-        whole, roots = image(form, one), image(form, other)
-        return [(*whole, *(self.radicand * x for x in roots)), (*roots, *whole)]
+
+def polar(form: Sequence[Row], vector: Sequence[Fraction], radicand: int) -> list[Row]:
+    """The polar form with a vector: a row; or two rows on (p, q) for a vector p + q sqrt(radicand).
+
+    The vector is then (p, q), of twice the length, too. `radicand` is 0 for a rational vector.
+    """
+    if not radicand:
+        return [image(form, vector)]
+    half = len(vector) // 2
+    whole, roots = image(form, vector[:half]), image(form, vector[half:])
+    return [(*whole, *(radicand * x for x in roots)), (*roots, *whole)]
 
 
 def rational_point(ray: ExactRay) -> tuple[Fraction, ...] | None:
@@ -142,28 +156,16 @@ def agree(signs: Sequence[int], given: Sequence[float]) -> bool:
     return all(s == e for s, e in pairs) or all(s == -e for s, e in pairs)
 
 
-def split_square(number: int) -> tuple[int, int]:
-    """A positive number as d s^2 with the largest s.
-
-    >>> split_square(180)
-    (5, 6)
-    """
-    free, square = 1, 1
-    for prime, power in fmpz(number).factor():
-        free *= int(prime) ** (power % 2)
-        square *= int(prime) ** (power // 2)
-    return free, square
-
-
 def _at(entry: Sequence[Fraction], root: Pair, radicand: int) -> Pair:
     value = Fraction(0), Fraction(0)
     for c in reversed(entry):
-        value = _times(value, root, radicand)
+        value = times(value, root, radicand)
         value = value[0] + c, value[1]
     return value
 
 
-def _times(one: Pair, other: Pair, radicand: int) -> Pair:
+def times(one: Pair, other: Pair, radicand: int) -> Pair:
+    """The product of a + b sqrt(radicand) and c + d sqrt(radicand)."""
     (a, b), (c, d) = one, other
     return a * c + radicand * b * d, a * d + b * c
 
@@ -171,4 +173,4 @@ def _times(one: Pair, other: Pair, radicand: int) -> Pair:
 def _over(one: Pair, other: Pair, radicand: int) -> Pair:
     c, d = other
     norm = c * c - radicand * d * d
-    return _times(one, (c / norm, -d / norm), radicand)
+    return times(one, (c / norm, -d / norm), radicand)

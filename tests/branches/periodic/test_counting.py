@@ -253,7 +253,7 @@ def test_what_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_what_is_open_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(counting, "exact_rays", lambda problem: None)
+    monkeypatch.setattr(counting, "exact_rays", lambda problem, clock: None)
     result = count_periodic("square-twist-cell", (1, 2))
     assert str(result.status) == "undecided"
     assert (len(result.branches), result.distinct, len(result.open)) == (6, None, 2)
