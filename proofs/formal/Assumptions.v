@@ -1,6 +1,6 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
-  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Triangles Emptied
+  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Triangles Emptied Exact
   Example BranchExample.
 
 Print Assumptions key_lemma.
@@ -19,6 +19,8 @@ Print Assumptions one_notched_verified.
 Print Assumptions emptied_verified.
 Print Assumptions all_emptied_verified.
 Print Assumptions all_notched_emptied_verified.
+Print Assumptions exact_verified.
+Print Assumptions exact_notched_verified.
 
 (** The others together. *)
 Definition others :=

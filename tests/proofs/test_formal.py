@@ -48,6 +48,8 @@ ASSUMED = {
     "emptied_verified": REALS,
     "all_emptied_verified": CLASSICAL,
     "all_notched_emptied_verified": CLASSICAL,
+    "exact_verified": CLASSICAL,
+    "exact_notched_verified": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

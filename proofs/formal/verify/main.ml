@@ -1,6 +1,7 @@
 (* exactfold-verify: verifies certificates of exactfold with a program that is proved in Coq. *)
 
 open Reading
+open Sheets
 module V = Verified
 
 let usage = "usage: exactfold-verify FILE\n\n\
@@ -9,81 +10,15 @@ let usage = "usage: exactfold-verify FILE\n\n\
   Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
   70 a defect, or memory is short.\n"
 
-let plural n word =
-  let ending = if n = 1 then word else if word.[String.length word - 1] = 'x' then
-    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ "s" in
-  Printf.sprintf "%d %s" n ending
-let not_verified text = Printf.printf "not verified here: %s\n" text
-let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
-
-(* The sheet of a file, without the vertices inside its triangulated triangles, and if a corner is reflex with a
-   first triangle that closes its notch; [inside] are the vertices inside the sheet without these two. *)
-type place = {
-  file : sheet; thin : sheet; d : V.drawing; p : V.prepared; corner : int option; hidden : int list;
-  common : (int * int * int) list; parts : V.part list; inside : int array; rim : int
-}
-
-let triangulated sheet more j =
-  only ("corners inside" ^ more) j;
-  let vertex j = small ~most:(Array.length sheet.points - 1) "a vertex of a triangle" j in
-  match List.map vertex (items "corners" (entry "corners" j)), items "inside" (entry "inside" j) with
-  | [ a; b; c ], inside -> ((a, b, c), List.map vertex inside)
-  | _ -> refuse "a triangle has not three corners"
-
-let place_of file triangles =
-  let thin, hidden, common, parts = Proposing.emptied file triangles in
-  let closed, corner = Proposing.closed thin hidden in
-  let d = Proposing.drawing closed hidden in
-  let p = Proposing.prepared thin d in
-  let inside = List.filter (fun v -> corner <> Some v) d.inside in
-  (* the drawings and the numbered folds that are proposed are those of the file *)
-  let pair (a, b, c) = ((a, b), c) in
-  let numbered = List.mapi (fun name (i, j, l, m) -> (name, (((i, j), l), m))) (Array.to_list (folds thin)) in
-  if d.points <> Array.to_list file.points
-    || List.sort compare (List.concat_map (fun (q : V.part) -> q.pieces) parts @ List.map pair common)
-      <> List.sort compare (List.map pair file.triangles)
-    || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
-  then failwith "the sheet that is proposed is not that of the file";
-  { file; thin; d; p; corner; hidden = List.concat_map snd triangles; common; parts;
-    inside = Array.of_list (List.rev inside); rim = List.length d.border + List.length d.inside - List.length inside }
-
-let shown_sheet t =
-  Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
-    (plural (Array.length t.file.points) "vertex") (Array.length t.inside + List.length t.hidden) t.rim
-    (plural (List.length t.file.triangles) "triangle") (plural (Array.length (folds t.file)) "fold") t.file.digest
-
-let check_sheet t =
-  let opened = if t.corner = None then t.d.triangles else List.tl t.d.triangles in
-  if not (V.sound t.d t.p && match t.corner with None -> true | Some r -> V.closes t.d r) then
-    unverified "the sheet is not a convex triangulated one, nor one with a notch";
-  if not (V.emptied t.d opened (List.map (fun (a, b, c) -> ((a, b), c)) t.common) t.parts) then
-    unverified "the triangulated triangles are not those of the sheet"
-
-let stay_flat t = if t.parts <> [] then
-  Printf.printf "          The %s with %s inside %s flat, by theorem emptied_verified.\n"
-    (plural (List.length t.parts) "triangle") (plural (List.length t.hidden) "vertex")
-    (if List.length t.parts = 1 then "stays" else "stay")
-
-let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
-  \          closes the notch.\n" r
-
 (* --- all branches --- *)
 
 (* [flat] is the number of letters F, of which the formal proof says nothing. *)
 type root = { bits : int; center : Z.t array; letters : int -> bool option; flat : int }
 
-let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
-
 let signed bytes at width =
   let negative = Char.code (Bytes.get bytes (at + width - 1)) > 127 in
   let n = Z.of_bits (Bytes.sub_string bytes at width) in
   if negative then Z.sub n (Z.shift_left Z.one (8 * width)) else n
-
-let letter_of root text k = match text.[k] with
-  | 'M' -> Some false
-  | 'V' -> Some true
-  | 'U' | 'F' -> None
-  | c -> refuse "root %d has a fold with the letter %c" root c
 
 (* The roots of a block, which are read one by one. *)
 let block size folds number length data =
@@ -247,104 +182,6 @@ let all_branches header blocks claims =
   if corner <> None then not_verified "that the chart of the file names this side of each branch";
   not_verified "that every branch continues to a true motion"
 
-(* --- one branch --- *)
-
-(* Whether the boundary saddle of heights is positive: their sum with the weights of the affine dependency of the
-   four boundary vertices. The vertex with the smallest number has a positive weight, or, if the others are in
-   line, both ends of this line. The order of the four does not matter. *)
-let positive_saddle sheet (a, b, c, d) h =
-  let turn x y z =
-    let (px, py), (qx, qy), (rx, ry) = sheet.points.(x), sheet.points.(y), sheet.points.(z) in
-    Z.sub (Z.mul (Z.sub qx px) (Z.sub ry py)) (Z.mul (Z.sub qy py) (Z.sub rx px)) in
-  let weights = [ (a, turn b c d); (b, Z.neg (turn a c d)); (c, turn a b d); (d, Z.neg (turn a b c)) ] in
-  let first = Z.sign (List.assoc (min (min a b) (min c d)) weights) in
-  let most = List.fold_left (fun n (_, w) -> n + Z.sign w) 0 weights in
-  let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
-  Z.sign sum * (if first <> 0 then first else most) > 0
-
-let one_branch data =
-  let claims = entry "claims" data and evidence = entry "evidence" data in
-  only "format version pattern claims evidence provenance" data;
-  only "gauge vertex_signs assignment squared_distance" claims;
-  only "emptied heights denominator" evidence;
-  let file = sheet (entry "pattern" data) in
-  let triangles = items "emptied" (entry "emptied" evidence) in
-  let t = place_of file (List.map (triangulated file "") triangles) in
-  let { d; p; corner; inside; _ } = t in
-  shown_sheet t;
-  check_sheet t;
-  let given = Array.of_list (items "heights" (entry "heights" evidence)) in
-  if Array.length given <> Array.length file.points then refuse "the numbers of heights and of vertices differ";
-  let gone = Array.make (Array.length given) false in
-  List.iter (fun v -> gone.(v) <- true) t.hidden;
-  let height v j = match j with
-    | Null when gone.(v) -> Z.zero
-    | _ when gone.(v) -> invalid "vertex %d lies inside a triangulated triangle and has a height" v
-    | j -> whole "a height" j in
-  let h = Array.mapi height given in
-  if Z.leq (whole "denominator" (entry "denominator" evidence)) Z.zero then invalid "the denominator is not positive";
-  let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
-  let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
-  let all = Array.of_list (List.sort compare (t.hidden @ Array.to_list inside)) in
-  if Array.length signs <> Array.length all then refuse "the numbers of signs and of vertices differ";
-  let gauge = string "gauge" (entry "gauge" claims) in
-  if gauge = "saddle" then begin
-    match d.border with
-    | [ _; _; _ ] when corner <> None ->
-      if List.exists (fun v -> not (Z.equal h.(v) Z.zero)) d.border then
-        invalid "the boundary vertices other than the reflex corner are not all at height 0"
-    | [ w; x; y; z ] -> if not (positive_saddle file (w, x, y, z) h) then invalid "the boundary saddle is not positive"
-    | _ -> invalid "the gauge \"saddle\" needs four boundary vertices"
-  end
-  else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim"
-  else if corner <> None then invalid "the gauge \"rim\" needs a convex boundary";
-  let claimed = Hashtbl.create 64 in
-  Option.iter (fun r -> Hashtbl.replace claimed r 1) corner;
-  Array.iteri (fun k v ->
-    if gone.(v) && signs.(k) <> 0 then invalid "vertex %d lies inside a triangulated triangle, and its sign is not 0" v;
-    Hashtbl.replace claimed v signs.(k)) all;
-  (* a vertex that is claimed to be flat lies in both closed nappes: the test is made in that of the heights *)
-  let ups = Array.make (Array.length h) false in
-  List.iter (fun (b : V.hub) ->
-    let v = b.at_vertex in
-    let curved, side = V.measured (fun u -> h.(u)) h.(v) b.wedges in
-    if Z.equal curved Z.zero then
-      refuse "the heights have curvature 0 at vertex %d; heights with positive curvatures are verified here" v;
-    ups.(v) <- (if Hashtbl.find claimed v = 0 then Z.gt side Z.zero else Hashtbl.find claimed v > 0)) p.V.hubs;
-  let text = string "assignment" (entry "assignment" claims) in
-  let ends = Array.map (fun (i, j, _, _) -> (i, j)) (folds file) in
-  if String.length text <> Array.length ends then refuse "the number of letters is wrong";
-  let places = Hashtbl.create 64 in
-  Array.iteri (fun k (i, j) ->
-    if (gone.(i) || gone.(j)) && not (String.contains "FU" text.[k]) then
-      invalid "the fold %d, %d lies inside a triangulated triangle, and is not F" i j;
-    Hashtbl.replace places (i, j) k) ends;
-  let own = Array.of_list p.V.folds in
-  let text = String.init (Array.length own) (fun k ->
-    let ((i, j), _), _ = own.(k).V.ends in text.[Hashtbl.find places (i, j)]) in
-  let letters = letter_of 0 text in
-  let up v = ups.(v) and given u = h.(u) in
-  if not (match corner with
-    | None -> V.verify_one d p up given letters
-    | Some r -> V.verify_one_notched d p r up given letters) then unverified "the branch did not pass the test";
-  let bent = List.filter (fun (b : V.hub) -> corner <> Some b.at_vertex && V.is_bent letters b) p.V.hubs in
-  List.iter (fun (b : V.hub) -> if Hashtbl.find claimed b.at_vertex = 0 then
-    invalid "vertex %d has the sign 0, but a fold with a letter M or V" b.at_vertex) bent;
-  let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) (- List.length t.hidden) signs in
-  let others = Array.length inside - List.length bent and flat = flats text in
-  Printf.printf "VERIFIED  exactly one %s lies in the closed nappes of %s.\n\
-    \          It has the letters M and V of the file, and the signs of the %s where they\n\
-    \          end. By theorem %s.\n"
-    (if corner = None then "solution over these boundary heights" else "branch")
-    (if zeros = 0 then "these signs" else "these signs,\n          at vertices with the sign 0 those of the heights")
-    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex")
-    (if corner = None then "one_verified" else "one_notched_verified");
-  Option.iter raised corner;
-  stay_flat t;
-  if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
-  if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
-  not_verified "the squared distance"
-
 (* --- files --- *)
 
 let known format version = refuse "the file is \"%s\", version %s; only version 1 of \"exactfold compact certificate\" \
@@ -373,7 +210,7 @@ let verify path =
   else begin
     let data = parse text in
     match kind data with
-    | "exactfold branch", "1" -> one_branch data
+    | "exactfold branch", "1" -> Branch.one_branch data
     | format, version -> known format version
   end
 
