@@ -26,6 +26,7 @@ from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, is_cell_file
 
 if TYPE_CHECKING:  # counting branches does not need it
+    from exactfold._support.results import Certified
     from exactfold.branches.counting.stream import StreamedCount
     from exactfold.panels.result import Decomposition
 
@@ -155,7 +156,6 @@ class Asked(CountOptions):
 
     def _periodic(self) -> int:
         """Count the branches of a periodic sheet for one direction, or for all."""
-        from exactfold.branches.periodic.certificate import periodic_certificate
         from exactfold.branches.periodic.counting import count_periodic
 
         for option, value in (
@@ -175,33 +175,37 @@ class Asked(CountOptions):
         with Bar("reading") as bar:
             cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             result = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
-        written = None
-        if self.certificate is not None:
-            try:
-                write_certificate(periodic_certificate(result), self.certificate)
-                written = str(self.certificate)
-            except NotApplicableError as error:
-                say(f"no certificate was written: {error}")
+        written = self._written(result)
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:
             report.show(report.periodic_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
+    def _written(self, result: Certified) -> str | None:
+        """Write the certificate that was asked for, if there is one; returns its name."""
+        if self.certificate is None:
+            return None
+        try:
+            write_certificate(result.certificate(), self.certificate)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+            return None
+        return str(self.certificate)
+
     def _panel_cell(self) -> int:
         """Count the motions of a tessellation of rigid panels."""
         from exactfold.panels.periodic.modes import count_panel_cell
 
-        if self.certificate is not None:
-            raise UsageError("motions of a tessellation of rigid panels have no certificate")
         with Bar("reading") as bar:
             cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             bar("solving")
             result = count_panel_cell(cell, limit=self.limit)
+        written = self._written(result)
         if self.as_json:
-            print(json.dumps(result.to_dict(name_of(self.pattern))))
+            print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:
-            report.show(report.panel_cell_report(result, everything=self.everything))
+            report.show(report.panel_cell_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
     def _all_directions(self) -> int:
