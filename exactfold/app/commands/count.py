@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -26,7 +27,6 @@ from exactfold.pattern.near_degeneracy import near_degenerate
 from exactfold.pattern.opening import Opened, is_cell_file
 
 if TYPE_CHECKING:  # counting branches does not need it
-    from exactfold._support.results import Certified
     from exactfold.branches.counting.stream import StreamedCount
     from exactfold.panels.result import Decomposition
 
@@ -156,6 +156,7 @@ class Asked(CountOptions):
 
     def _periodic(self) -> int:
         """Count the branches of a periodic sheet for one direction, or for all."""
+        from exactfold.branches.periodic.certificate import periodic_certificate
         from exactfold.branches.periodic.counting import count_periodic
 
         for option, value in (
@@ -175,19 +176,19 @@ class Asked(CountOptions):
         with Bar("reading") as bar:
             cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             result = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
-        written = self._written(result)
+        written = self._written(lambda: periodic_certificate(result))
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:
             report.show(report.periodic_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
-    def _written(self, result: Certified) -> str | None:
-        """Write the certificate that was asked for, if there is one; returns its name."""
+    def _written(self, certificate: Callable[[], dict[str, Any]]) -> str | None:
+        """Write the certificate if it was asked for, and there is one; returns its name."""
         if self.certificate is None:
             return None
         try:
-            write_certificate(result.certificate(), self.certificate)
+            write_certificate(certificate(), self.certificate)
         except NotApplicableError as error:
             say(f"no certificate was written: {error}")
             return None
@@ -195,13 +196,14 @@ class Asked(CountOptions):
 
     def _panel_cell(self) -> int:
         """Count the motions of a tessellation of rigid panels."""
+        from exactfold.panels.periodic.certificate import panel_cell_certificate
         from exactfold.panels.periodic.modes import count_panel_cell
 
         with Bar("reading") as bar:
             cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             bar("solving")
             result = count_panel_cell(cell, limit=self.limit)
-        written = self._written(result)
+        written = self._written(lambda: panel_cell_certificate(result))
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:

@@ -102,9 +102,10 @@ def test_other_claims() -> None:
         document = panel_file("miura")
         document["claims"][key] = value
         refused(document, f"the claim {key!r} is not what the pattern shows")
-    for change in (lambda motions: motions.pop(), lambda motions: motions.append(motions[1])):
+    for places in ([0], [0, 1, 1]):
         document = panel_file("miura")
-        change(document["claims"]["motions"])
+        motions = document["claims"]["motions"]
+        document["claims"]["motions"] = [motions[k] for k in places]
         stopped(document, "the claim 'motions' is not what the pattern shows")
 
 
