@@ -21,6 +21,8 @@ from exactfold.studies.running.tallies import tallied
 
 DIRECTIONS: Final = ((3, 4), (1, 0), (-2, 5))
 _SEEDS: Final = 10**6
+_LIMIT: Final = 60.0
+"""The seconds for one count of a row, and for the answer for all directions."""
 
 
 def recipes(seed: int, numbers: Mapping[int, int]) -> Iterator[Recipe]:
@@ -49,14 +51,14 @@ def row(recipe: Recipe) -> dict[str, Any]:
         int(recipe["denominator"]),
         flips=int(recipe["flips"]),
     )
-    results = [count_periodic(cell, n) for n in DIRECTIONS]
+    results = [count_periodic(cell, n, limit=_LIMIT) for n in DIRECTIONS]
     sides: dict[str, set[int]] = {}
     for result in results:
         for branch in result:
             sides.setdefault(branch.vertex_signs, set()).add(branch.b)
     proved = all(result.status is PROVED for result in results)
     pleats = len(results[0].pleats)
-    whole = None if pleats else count_directions(cell)
+    whole = None if pleats else count_directions(cell, limit=_LIMIT)
     order = None if whole is None else whole.permutation
     crossings = () if whole is None else whole.crossings
     return {

@@ -185,32 +185,36 @@ End Bend.
 
 (** ** One branch near heights with positive curvatures *)
 
-(** Heights on the right side of each vertex are near exactly one branch, whose folds bend like
-    theirs where they bend more than the distance allows. A vertex where such a fold ends is not flat. *)
-Theorem near_branch S (up : nat -> bool) (r : vec) (c : point) (R2 dist : R)
+(** Heights on the right side of each vertex are near exactly one solution of K_v = 0, or of K_v = K_v(r) at
+    the vertices that are [kept]. Its folds bend like theirs where they bend more than the distance allows.
+    A vertex where such a fold ends is not flat. *)
+Theorem near_solution S (up kept : nat -> bool) (r : vec) (c : point) (R2 dist : R)
   (folds : list (nat * nat * nat * nat * bool)) :
   (forall v, In v (inner S) -> 0 < K S v r /\ 0 < sign (up v) * K2 S v (cone S v) r) ->
   (forall v, In v (inner S ++ rim S) -> 0 <= multiplier S c R2 v) ->
-  sum (inner S) (fun v => multiplier S c R2 v * K S v r) <= dist ->
+  sum (inner S) (fun v => if kept v then 0 else multiplier S c R2 v * K S v r) <= dist ->
   (forall i j l m valley, In (i, j, l, m, valley) folds ->
     In (i, j, l) (corners (faces S)) /\ In (i, m, j) (corners (faces S)) /\ 0 < sign valley * bend S i j l m r /\
     (let p := spoke (at_ S) in
      dot (p i j) (p i j) * (2 / cross (p i j) (p i l) + 2 / cross (p i m) (p i j)) * dist <
        bend S i j l m r * bend S i j l m r)) ->
-  exists h, has_rim S r h /\ solves S (fun _ => 0) h /\ in_nappes S up h /\
+  let k := fun v => if kept v then K S v r else 0 in
+  exists h, has_rim S r h /\ solves S k h /\ in_nappes S up h /\
     (forall v j l m valley, In v (inner S) -> In (v, j, l, m, valley) folds ->
       0 < sign (up v) * K2 S v (cone S v) h) /\
-    (forall g, has_rim S r g -> solves S (fun _ => 0) g -> in_nappes S up g -> g = h) /\
+    (forall g, has_rim S r g -> solves S k g -> in_nappes S up g -> g = h) /\
     energy S (minus h r) <= dist /\
     (forall i j l m valley, In (i, j, l, m, valley) folds -> 0 < sign valley * bend S i j l m h).
 Proof.
-  intros Vs Ws Dist Fs.
-  destruct (one_solution_per_sign_vector S (fun _ => 0) r up) as (h & (Hr & Hs & Hn) & U); [intros; lra|].
+  intros Vs Ws Dist Fs k.
+  assert (Pk : forall v, In v (inner S) -> 0 <= k v).
+  { intros v Hv. unfold k. destruct (Vs v Hv). destruct (kept v); lra. }
+  destruct (one_solution_per_sign_vector S k r up Pk) as (h & (Hr & Hs & Hn) & U).
   assert (Rn : in_nappes S up r) by (intros v Hv; destruct (Vs v Hv); split; lra).
   assert (En : energy S (minus h r) <= dist).
   { eapply Rle_trans; [apply (distance S c R2 up h r); try assumption; exact Hr|].
-    eapply Rle_trans; [|exact Dist]. right. apply sum_ext. intros v Hv. f_equal.
-    rewrite (Hs v Hv), sqrt_0. destruct (Rn v Hv) as (P & _).
+    eapply Rle_trans; [|exact Dist]. right. apply sum_ext. intros v Hv.
+    rewrite (Hs v Hv). unfold k. destruct (kept v); [ring|]. f_equal. rewrite sqrt_0. destruct (Rn v Hv) as (P & _).
     replace (K S v r) with (sqrt (K S v r) * sqrt (K S v r)) at 3 by now apply sqrt_sqrt. ring. }
   assert (Letters : forall i j l m valley, In (i, j, l, m, valley) folds -> 0 < sign valley * bend S i j l m h).
   { intros i j l m valley Hf. destruct (Fs _ _ _ _ _ Hf) as (C1 & C2 & Sg & Far).
@@ -229,10 +233,29 @@ Proof.
     { intros Z. destruct (Fs _ _ _ _ _ Hf) as (C1 & C2 & _). pose proof (Letters _ _ _ _ _ Hf) as B.
       apply (bent_not_flat S v j l m h C1 C2 Hv).
       - intros B0. rewrite B0 in B. lra.
-      - apply (both_nappes_flat S v h Hv); [|assumption]. rewrite (Hs v Hv). lra. }
+      - apply (both_nappes_flat S v h Hv); [|assumption]. rewrite (Hs v Hv). auto. }
     destruct P as [P|P]; [assumption|]. exfalso. apply N. destruct (up v); simpl in P; lra.
   - intros g Gr Gs Gn. symmetry. apply U. auto.
 Qed.
+
+(** The same without vertices that are kept: a branch. *)
+Theorem near_branch S (up : nat -> bool) (r : vec) (c : point) (R2 dist : R)
+  (folds : list (nat * nat * nat * nat * bool)) :
+  (forall v, In v (inner S) -> 0 < K S v r /\ 0 < sign (up v) * K2 S v (cone S v) r) ->
+  (forall v, In v (inner S ++ rim S) -> 0 <= multiplier S c R2 v) ->
+  sum (inner S) (fun v => multiplier S c R2 v * K S v r) <= dist ->
+  (forall i j l m valley, In (i, j, l, m, valley) folds ->
+    In (i, j, l) (corners (faces S)) /\ In (i, m, j) (corners (faces S)) /\ 0 < sign valley * bend S i j l m r /\
+    (let p := spoke (at_ S) in
+     dot (p i j) (p i j) * (2 / cross (p i j) (p i l) + 2 / cross (p i m) (p i j)) * dist <
+       bend S i j l m r * bend S i j l m r)) ->
+  exists h, has_rim S r h /\ solves S (fun _ => 0) h /\ in_nappes S up h /\
+    (forall v j l m valley, In v (inner S) -> In (v, j, l, m, valley) folds ->
+      0 < sign (up v) * K2 S v (cone S v) h) /\
+    (forall g, has_rim S r g -> solves S (fun _ => 0) g -> in_nappes S up g -> g = h) /\
+    energy S (minus h r) <= dist /\
+    (forall i j l m valley, In (i, j, l, m, valley) folds -> 0 < sign valley * bend S i j l m h).
+Proof. exact (near_solution S up (fun _ => false) r c R2 dist folds). Qed.
 
 (** ** The certificate *)
 

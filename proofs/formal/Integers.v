@@ -77,14 +77,18 @@ Definition fold_passes (h : zheights) (asked : nat -> letter) (far unit : Z) (f 
 Definition is_asked (asked : nat -> letter) (k : nat) : bool :=
   match asked k with Some _ => true | None => false end.
 
-(** The bound of the distance, if every vertex passes. *)
-Fixpoint distance_of (up : nat -> bool) (h : zheights) (bs : list hub) : option Z :=
+(** The bound of the distance to the solution with the same curvature at the vertices that are [kept], and
+    with curvature 0 at the others; if every vertex passes. *)
+Fixpoint distance_of (kept up : nat -> bool) (h : zheights) (bs : list hub) : option Z :=
   match bs with
   | [] => Some 0%Z
   | b :: bs =>
     let (k, s) := measured h (h (at_vertex b)) (wedges b) in
     if (0 <? k)%Z && (if up (at_vertex b) then 0 <? s else s <? 0)%Z
-    then match distance_of up h bs with Some far => Some (far + share b * k)%Z | None => None end
+    then match distance_of kept up h bs with
+      | Some far => Some (if kept (at_vertex b) then far else far + share b * k)%Z
+      | None => None
+      end
     else None
   end.
 
@@ -92,8 +96,8 @@ Fixpoint distance_of (up : nat -> bool) (h : zheights) (bs : list hub) : option 
 Definition is_bent (asked : nat -> letter) (b : hub) : bool := existsb (is_asked asked) (here b).
 
 (** The test of one branch. *)
-Definition passes (p : prepared) (up : nat -> bool) (h : zheights) (asked : nat -> letter) : bool :=
-  match distance_of up h (hubs p) with
+Definition passes (p : prepared) (kept up : nat -> bool) (h : zheights) (asked : nat -> letter) : bool :=
+  match distance_of kept up h (hubs p) with
   | None => false
   | Some far => forallb (fold_passes h asked far (units p)) (folds p)
   end.
@@ -285,9 +289,11 @@ Proof.
   exists f, i, j, l, m, valley. rewrite Nm. repeat split; try assumption. now apply (fold_in x).
 Qed.
 
-Lemma distance_means (up : nat -> bool) h far : prepared_ok = true -> distance_of up h (hubs p) = Some far ->
+Lemma distance_means (kept up : nat -> bool) h far :
+  prepared_ok = true -> distance_of kept up h (hubs p) = Some far ->
   (forall v, In v (inside d) -> 0 < K S v (reals h) /\ 0 < sign (up v) * K2 S v (cone S v) (reals h)) /\
-  sum (inside d) (fun v => IZR (multiplier4 v) * K S v (reals h)) <= 4 * IZR far / IZR (units p).
+  sum (inside d) (fun v => if kept v then 0 else IZR (multiplier4 v) * K S v (reals h)) <=
+    4 * IZR far / IZR (units p).
 Proof.
   intros Ok. assert (Pu : 0 < IZR (units p)).
   { pose proof Ok as O. unfold prepared_ok in O. rewrite !andb_true_iff in O. destruct O as ((_ & O) & _).
@@ -303,7 +309,7 @@ Proof.
   destruct (hub_means b Ok (Sub b (or_introl eq_refl))) as (_ & H).
   destruct (measured h (h (at_vertex b)) (wedges b)) as (k, s). destruct M as (Mk & M).
   destruct (_ && _) eqn:C; [|discriminate]. rewrite andb_true_iff in C. destruct C as (Pk & Sd).
-  destruct (distance_of up h l) as [rest|] eqn:D; [|discriminate]. intros [= <-].
+  destruct (distance_of kept up h l) as [rest|] eqn:D; [|discriminate]. intros [= <-].
   destruct (IH (fun c Hc => Sub c (or_intror Hc)) rest eq_refl) as (All & Far).
   apply Z.ltb_lt in Pk.
   assert (Sd' : (if up (at_vertex b) then 0 < s else s < 0)%Z) by (destruct (up (at_vertex b)); now apply Z.ltb_lt).
@@ -312,7 +318,7 @@ Proof.
   - intros v [<-|Hv]; [now split|]. now apply All.
   - unfold hub_ok in H. rewrite !andb_true_iff in H. destruct H as ((((((Ps & _) & _) & _) & _) & W) & _).
     apply Z.ltb_lt, IZR_lt in Ps. apply Z.leb_le, IZR_le in W. rewrite !mult_IZR in W.
-    rewrite plus_IZR, mult_IZR, Mk.
+    destruct (kept (at_vertex b)); [lra|]. rewrite plus_IZR, mult_IZR, Mk.
     set (w := IZR (multiplier4 (at_vertex b))) in *. set (u := IZR (units p)) in *.
     set (D' := IZR (scale b)) in *. set (K0 := K S (at_vertex b) (reals h)) in *. set (om := IZR (share b)) in *.
     replace (4 * (IZR rest + om * (D' * K0)) / u) with (om * (4 * D') * K0 / u + 4 * IZR rest / u)
@@ -377,18 +383,22 @@ Definition asked_folds (asked : nat -> letter) : list (nat * nat * nat * nat * b
     | None => []
     end) (folds p).
 
-(** What passes the test is proved: exactly one branch with these heights of the rim lies in these
-    closed nappes; it has these signs where it is bent, and its folds have the letters asked for. *)
-Theorem passed (up : nat -> bool) h asked : prepared_ok = true -> passes p up h asked = true ->
-  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ in_nappes S up g /\
+(** What passes the test is proved: exactly one solution with these heights of the rim, and with these
+    curvatures at the vertices that are kept, lies in these closed nappes; it has these signs where it is
+    bent, and its folds have the letters asked for. *)
+Theorem passed (kept up : nat -> bool) h asked : prepared_ok = true -> passes p kept up h asked = true ->
+  let k := fun v => if kept v then K S v (reals h) else 0 in
+  (forall v, In v (inside d) -> 0 < K S v (reals h)) /\
+  exists g, has_rim S (reals h) g /\ solves S k g /\ in_nappes S up g /\
     (forall b, In b (hubs p) -> is_bent asked b = true ->
       0 < sign (up (at_vertex b)) * K2 S (at_vertex b) (cone S (at_vertex b)) g) /\
-    (forall g', has_rim S (reals h) g' -> solves S (fun _ => 0) g' -> in_nappes S up g' -> g' = g) /\
+    (forall g', has_rim S (reals h) g' -> solves S k g' -> in_nappes S up g' -> g' = g) /\
     (forall f i j l m valley, In f (folds p) -> ends f = (i, j, l, m) -> asked (name f) = Some valley ->
       0 < sign valley * bend S i j l m g).
 Proof.
-  intros Ok. unfold passes. destruct (distance_of up h (hubs p)) as [far|] eqn:D; [|discriminate].
-  rewrite forallb_forall. intros Fs. destruct (distance_means up h far Ok D) as (Vs & Far).
+  intros Ok. unfold passes. destruct (distance_of kept up h (hubs p)) as [far|] eqn:D; [|discriminate].
+  rewrite forallb_forall. intros Fs. destruct (distance_means kept up h far Ok D) as (Vs & Far).
+  split; [intros v Hv; now apply Vs|].
   pose proof Ok as O. unfold prepared_ok in O. rewrite !andb_true_iff, !forallb_forall in O.
   destruct O as (((_ & Forms) & Pu) & Ws). apply Z.ltb_lt, IZR_lt in Pu.
   set (c := (IZR (fst (centre2 p)) / 2, IZR (snd (centre2 p)) / 2) : point).
@@ -416,13 +426,13 @@ Proof.
     - apply (Rmult_lt_reg_l (a * b * (a * b) * IZR (units p))); [repeat apply Rmult_lt_0_compat; assumption|].
       replace (_ * (w * w)) with (IZR (units p) * (a * b * w * (a * b * w))) by ring.
       replace (_ * _) with (2 * n * (a + b) * (a * b) * IZR far) by (field; lra). exact Big. }
-  destruct (near_branch S up (reals h) c (IZR (radius4 p) / 4) (IZR far / IZR (units p)) (asked_folds asked))
+  destruct (near_solution S up kept (reals h) c (IZR (radius4 p) / 4) (IZR far / IZR (units p)) (asked_folds asked))
     as (g & Gr & Gs & Gn & Sg & U & _ & Lt).
   - intros v Hv. now apply Vs.
   - intros v Hv. rewrite Weight. specialize (Ws v Hv). apply Z.leb_le, IZR_le in Ws. lra.
-  - rewrite (sum_ext _ _ (fun v => / 4 * (IZR (multiplier4 v) * K S v (reals h)))).
+  - rewrite (sum_ext _ _ (fun v => / 4 * (if kept v then 0 else IZR (multiplier4 v) * K S v (reals h)))).
     + rewrite sum_scal. unfold Rdiv in *. change (inner S) with (inside d). lra.
-    + intros v _. rewrite Weight. field.
+    + intros v _. rewrite Weight. destruct (kept v); field.
   - intros i j l m valley Hf. unfold asked_folds in Hf. apply in_flat_map in Hf. destruct Hf as (f & Hf & Hc).
     destruct (asked (name f)) as [w|] eqn:As; [|easy]. destruct (ends f) as [[[i0 j0] l0] m0] eqn:E.
     destruct (Fold f i0 j0 l0 m0 w Hf E As) as (C1 & C2 & Sg & Big).

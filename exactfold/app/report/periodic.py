@@ -18,7 +18,7 @@ from exactfold.panels.periodic.result import fold_name
 
 if TYPE_CHECKING:
     from exactfold._support.verdict import Verdict
-    from exactfold.branches.periodic.directions_result import DirectionsCount
+    from exactfold.branches.periodic.directions_result import DirectionsCount, ExactDirection
     from exactfold.branches.periodic.result import AlgebraicLine, HeightSpace, PeriodicCount
     from exactfold.panels.periodic.result import PanelCell, PeriodicMotion
 
@@ -132,6 +132,8 @@ def directions_report(result: DirectionsCount, *, everything: bool) -> Group:
         number = counted(len(result.branches), "branch")
         answer = Text.assemble(f"{number} over all directions - ", status_text(PROVED), took)
     parts: list[Any] = [answer]
+    if result.families is not None and result.status is not PROVED:
+        parts.append(_family_directions(result.families))
     limit = listed(len(result.branches), everything=everything)
     if limit:
         parts += ["", _branches_table(result, limit), *more_text(len(result.branches) - limit)]
@@ -150,6 +152,13 @@ def directions_report(result: DirectionsCount, *, everything: bool) -> Group:
             ),
         ]
     return Group(*parts)
+
+
+def _family_directions(found: Sequence[ExactDirection]) -> Text:
+    """In which directions there are families, which is proved."""
+    where = ", ".join(f"{n} ({n.angle:.3f} degrees)" for n in found)
+    what = f"families only across {where} - " if found else "no families in any direction - "
+    return Text.assemble(what, status_text(PROVED))
 
 
 def _half_turn(result: DirectionsCount) -> str:

@@ -8,12 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from exactfold._support.arrays import FloatArray
 from exactfold._support.clock import Clock
 from exactfold._support.plurals import agreeing
 from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.branches.periodic.exactly import ExactRay, exact_rays
-from exactfold.branches.periodic.lines import agree, covering, rational_point
+from exactfold.branches.periodic.lines import (
+    QuadraticLine,
+    agree,
+    covering,
+    rational_point,
+    solved_near,
+)
 from exactfold.branches.periodic.rays import Ray, prove_rays
 from exactfold.branches.periodic.result import (
     AlgebraicLine,
@@ -76,10 +83,10 @@ def count_periodic(
         again = prove_rays(problem, sharper, rays.signs[missing], clock)
         proved |= {missing[row]: replace(ray, row=missing[row]) for row, ray in again.items()}
         missing = sorted(set(missing) - proved.keys())
-    covers = _covered(problem, rays, missing, clock) if missing and not clock.passed else []
-    result = _result(problem, rays, proved, covers)
+    covers, lines = _covered(problem, rays, missing, clock)
+    result = _result(problem, rays, proved, covers, lines)
     if result.status is not PROVED and not clock.passed:
-        exact = exact_rays(problem)
+        exact = exact_rays(problem, clock)
         if exact is not None:
             left = [rays.signs[row].tolist() for row in missing]
             left = [s for s in left if not any(agree(cover.signs, s) for cover in covers)]
@@ -88,9 +95,9 @@ def count_periodic(
                 if cover is not None and any(agree(cover.signs, s) for s in left):
                     covers.append(cover)
                     left = [s for s in left if not agree(cover.signs, s)]
-            lines = covering(exact, left)
-            found = tuple(proved.values()), tuple(covers), lines or ()
-            evidence = None if lines is None else Evidence(problem, *found)
+            whole = covering(exact, left)
+            found = tuple(proved.values()), tuple(covers), whole or ()
+            evidence = None if whole is None else Evidence(problem, *found)
             result = replace(_of_exact(problem, exact), evidence=evidence)
     if result.status is not PROVED and clock.passed:
         result = replace(result, reason=f"{result.reason} after {clock.limit:g} seconds")
@@ -99,38 +106,67 @@ def count_periodic(
 
 def _covered(
     problem: PeriodicProblem, rays: PeriodicRays, missing: Sequence[int], clock: Clock
-) -> list[Cover]:
-    """Spaces that hold the cones of the missing sign vectors, as far as they are found."""
+) -> tuple[list[Cover], list[QuadraticLine]]:
+    """Spaces and lines that hold the cones of the missing sign vectors, as far as they are found.
+
+    Spaces that are guessed from floats come first; what they leave is solved exactly.
+    """
     spaces = Spaces(problem)
     covers: list[Cover] = []
+    lines: list[QuadraticLine] = []
+    if not missing or clock.passed:
+        return covers, lines
+    left: list[tuple[list[int], FloatArray]] = []
     with np.errstate(all="ignore"):
         limits = rays.limits(np.array(missing))
         for row, ray in zip(missing, limits, strict=True):
             if clock.passed:
                 break
-            if any(agree(cover.signs, rays.signs[row].tolist()) for cover in covers):
+            signs = rays.signs[row].astype(int).tolist()
+            if any(agree(cover.signs, signs) for cover in covers) or not np.isfinite(ray).all():
                 continue
-            cover = spaces.cover(ray) if np.isfinite(ray).all() else None
-            if cover is not None and agree(cover.signs, rays.signs[row].tolist()):
+            cover = spaces.cover(ray)
+            if cover is not None and agree(cover.signs, signs):
                 covers.append(cover)
-    return covers
+            else:
+                left.append((signs, ray))
+    solved: dict[tuple[frozenset[int], int], list[ExactRay]] = {}
+    for signs, ray in left:
+        if clock.passed:
+            break
+        if any(agree(found.signs, signs) for found in (*covers, *lines)):
+            continue
+        for found in solved_near(spaces, ray, solved):
+            if agree(found.signs, signs):
+                if isinstance(found, Cover):
+                    covers.append(found)
+                else:
+                    lines.append(found)
+                break
+    return covers, lines
 
 
 def _result(
-    problem: PeriodicProblem, rays: PeriodicRays, proved: dict[int, Ray], covers: list[Cover]
+    problem: PeriodicProblem,
+    rays: PeriodicRays,
+    proved: dict[int, Ray],
+    covers: list[Cover],
+    found: list[QuadraticLine],
 ) -> PeriodicCount:
     shown = Shown(problem)
     branches = [shown.branch(ray.signs, ray.b, ray.letters) for ray in proved.values()]
     spaces = list(dict.fromkeys(cover.space for cover in covers))
     lines = [space for space in spaces if space.is_ray]
     branches += [shown.exact_branch(space.basis[0]) for space in lines]
+    exact = [line.ray for line in found]
+    branches += [shown.branch(ray.signs, ray.b, ray.letters) for ray in exact if ray.b]
     wide = [space for space in spaces if space.dimension > 1 and space.bends]
     left = [
         shown.signs(signs)
         for row in range(len(rays.signs))
         if row not in proved
         for signs in [rays.signs[row].astype(int).tolist()]
-        if not any(agree(cover.signs, signs) for cover in covers)
+        if not any(agree(cover.signs, signs) for cover in (*covers, *found))
     ]
     number = len(rays.signs)
     total = f"{number} {agreeing(number, 'pair')} of opposite sign vectors"
@@ -142,10 +178,13 @@ def _result(
         if left
         else f"by theorem these are all: every one of {total} leads to one of them",
         sorted_branches(branches),
-        tuple(shown.space(basis) for basis in pleat_spaces(spaces)),
+        (
+            *(shown.space(basis) for basis in pleat_spaces(spaces)),
+            *(shown.algebraic(ray) for ray in exact if not ray.b),
+        ),
         tuple(shown.space(space.basis) for space in wide),
         tuple(left[:_MOST_OPEN]),
-        evidence=Evidence(problem, tuple(proved.values()), tuple(covers)),
+        evidence=Evidence(problem, tuple(proved.values()), tuple(covers), tuple(found)),
     )
 
 

@@ -19,19 +19,22 @@ from typing import Final
 from flint import nmod_poly
 
 from exactfold._support.clock import Clock
+from exactfold.branches.periodic.directions_result import ExactDirection
 from exactfold.branches.values.roots import AlgebraicRoot
-from exactfold.exact.numbers import integer_row
+from exactfold.errors import NotApplicableError
+from exactfold.exact.numbers import integer_row, over_common_denominator
 from exactfold.rigidity.equations.all_directions import AllDirections, FlatStar
 from exactfold.rigidity.equations.periodic import Row
 from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_matrices
 from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.groebner_bases import classes_of_ideal, groebner
 from exactfold.solve.algebraic.no_zeros import only_zero, roots_modulo
-from exactfold.solve.algebraic.quotient import SparsePolynomial
+from exactfold.solve.algebraic.quotient import sparse_quadrics
 
 MOST_UNKNOWNS: Final = 8
 """The most unknowns of a system that is solved exactly."""
 _PRIMES: Final = 3
+_ZERO: Final = Fraction(0)
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,25 @@ class RealPlace:
             return None
         ends = [a / b for a in top for b in low]
         return min(ends), max(ends)
+
+    def direction(self, problem: AllDirections) -> ExactDirection:
+        """The direction of the cylinder, as polynomials in the root."""
+        c_11, c_12, c_22 = problem.bend_rows()
+        star, zeros = self.place.star, self.place.zeros
+        rows = (c_12, c_22) if self.sign(c_22) else (c_11, c_12)
+        slope = [Fraction(k * c) for k, c in enumerate(zeros.polynomial)][1:]
+        entries = [*zeros.numerators, tuple(slope)]
+        length = max(map(len, entries))
+        flat: list[Fraction] = []
+        for row in rows:
+            on_y = star.on_chart(row)
+            flat += [
+                sum((c * e[k] for c, e in zip(on_y, entries, strict=True) if k < len(e)), _ZERO)
+                for k in range(length)
+            ]
+        whole, _ = over_common_denominator(flat)
+        interval = self.root.interval(64)
+        return ExactDirection.of(zeros.polynomial, interval, whole[:length], whole[length:])
 
 
 class OpenVertexError(Exception):
@@ -123,14 +145,17 @@ class Crossings:
                 f"{size} unknowns are too many, at most {MOST_UNKNOWNS} are solved"
             )
         if self.clock.passed:
-            raise OpenVertexError(f"no answer after {self.clock.limit:g} seconds")
+            raise OpenVertexError(self.clock.said)
         system = QuadraticSystem(matrices)
         if len(forms) == size:
-            found = groebner(system)
+            try:
+                found = groebner(system, clock=self.clock)
+            except NotApplicableError as error:
+                raise OpenVertexError(str(error)) from None
             if found.dimension is not None:
                 return found.classes
         else:
-            classes = classes_of_ideal([_sparse(matrix) for matrix in matrices], size)
+            classes = classes_of_ideal(sparse_quadrics(system), size)
             if classes is not None:
                 for zeros in classes:
                     zeros.verify(system)
@@ -193,15 +218,3 @@ def _reduced(star: FlatStar, zeros: RootClass, prime: int, root: int) -> list[in
         sum(int(c * scale) * value for c, value in zip(row, values, strict=True)) % prime
         for row in star.lift
     ]
-
-
-def _sparse(matrix: Sequence[Sequence[int]]) -> SparsePolynomial:
-    """The quadric of a symmetric matrix on (y, 1)."""
-    size = len(matrix) - 1
-    terms: dict[tuple[int, ...], int] = {}
-    for i in range(size + 1):
-        for j in range(i + 1):
-            value = matrix[i][j] * (1 + (i != j))
-            if value:
-                terms[tuple((k == i) + (k == j) for k in range(size))] = value
-    return terms

@@ -6,7 +6,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import atan2, degrees
 from typing import Final
 
 from exactfold._support.clock import Clock
@@ -18,12 +17,11 @@ from exactfold.branches.periodic.crossings import Crossings, OpenVertexError, Pl
 from exactfold.branches.periodic.directions_result import (
     BranchCrossing,
     DirectionsCount,
-    ExactDirection,
     RollingBranch,
 )
+from exactfold.branches.periodic.families import Families, OpenFamiliesError
 from exactfold.branches.periodic.result import PeriodicCount
 from exactfold.branches.periodic.shown import Shown
-from exactfold.exact.numbers import over_common_denominator
 from exactfold.pattern.periodic.cell_files import as_cell
 from exactfold.pattern.periodic.periodic_pattern import PeriodicPattern
 from exactfold.rigidity.equations.all_directions import AllDirections
@@ -51,7 +49,8 @@ def count_directions(
     again, permutes the sign vectors. The solutions with flat stars are found for all n together, as
     algebraic numbers.
 
-    UNDECIDED if the sheet has pleats, or if one of these steps is not proved; `reason` says which.
+    If the sheet has pleats, only the directions with families are proved (Theorem 21), and the rest
+    is UNDECIDED; so it is if one of these steps is not proved; `reason` says which.
     Raises the errors of `count_periodic`.
 
     >>> result = count_directions("waterbomb-cell")
@@ -75,17 +74,13 @@ def _directions(
         if found.status is not PROVED:
             return _open(pattern, f"direction {direction[0]},{direction[1]}: {found.reason}")
         if found.pleats:
-            number = len(found.pleats)
-            return _open(
-                pattern,
-                f"the sheet has {counted(number, 'space')} of pleats: where branches meet them, "
-                f"b is 0, and they are not followed; count one direction",
-            )
+            return _with_pleats(problem, found, clock)
         if all(branch.multiplicity == 1 << len(always) for branch in found):
             base = found
             break
     if base is None:
-        return _open(pattern, "in all directions that were tried some branch has a flat vertex")
+        reason = "in all directions that were tried some branch has a flat vertex"
+        return replace(_open(pattern, reason), families=())
     branches = tuple(RollingBranch(branch.vertex_signs, branch.b) for branch in base)
     labels = [_label(problem, branch) for branch in branches]
     places: list[Place] = []
@@ -107,7 +102,9 @@ def _directions(
         events = []
     crossings = tuple(_crossing(problem, base, event) for event in events)
     if reasons:
-        return replace(_open(pattern, "; ".join(reasons)), branches=branches, crossings=crossings)
+        return replace(
+            _open(pattern, "; ".join(reasons)), branches=branches, crossings=crossings, families=()
+        )
     number = len(crossings)
     return DirectionsCount(
         pattern,
@@ -118,7 +115,21 @@ def _directions(
         branches,
         crossings,
         _permutation(labels, [(event.signs, event.place.flat) for event in events]),
+        families=(),
     )
+
+
+def _with_pleats(problem: AllDirections, base: PeriodicCount, clock: Clock) -> DirectionsCount:
+    """The answer for a sheet with pleats: only the directions with families are known."""
+    reason = (
+        f"the sheet has {counted(len(base.pleats), 'space')} of pleats: where branches meet them, "
+        "b is 0, and they are not followed; count one direction"
+    )
+    try:
+        families = Families(problem, base, clock).directions()
+    except OpenFamiliesError as error:
+        return _open(problem.pattern, f"{reason}; in which directions there are families: {error}")
+    return replace(_open(problem.pattern, reason), families=families)
 
 
 def _open(pattern: PeriodicPattern, reason: str) -> DirectionsCount:
@@ -183,32 +194,9 @@ def _place(event: _Event) -> tuple[bool, Fraction]:
 def _crossing(problem: AllDirections, base: PeriodicCount, event: _Event) -> BranchCrossing:
     shown = Shown(PeriodicProblem(problem.pattern, problem.parts, base.direction))
     branch = shown.branch(event.signs, 1, "F" * len(problem.sheet.edges))
-    exact, angle = _direction(problem, event)
+    exact = event.real.direction(problem)
     vertices = tuple(problem.labels[v] for v in event.place.flat)
-    return BranchCrossing(exact, angle, branch.vertex_signs, branch.b, vertices)
-
-
-def _direction(problem: AllDirections, event: _Event) -> tuple[ExactDirection, float]:
-    """The direction as polynomials in a root, and its angle in degrees in (0, 180]."""
-    c_11, c_12, c_22 = problem.bend_rows()
-    star, zeros, root = event.place.star, event.place.zeros, event.real.root
-    x, y = (c_12, c_22) if event.real.sign(c_22) else (c_11, c_12)
-    slope = [Fraction(k * c) for k, c in enumerate(zeros.polynomial)][1:]
-    entries = [*zeros.numerators, tuple(slope)]
-    length = max(map(len, entries))
-    polynomials = []
-    for row in (x, y):
-        on_y = star.on_chart(row)
-        sums = [
-            sum((c * e[k] for c, e in zip(on_y, entries, strict=True) if k < len(e)), Fraction(0))
-            for k in range(length)
-        ]
-        polynomials.append(sums)
-    flat, _ = over_common_denominator([*polynomials[0], *polynomials[1]])
-    exact = ExactDirection.of(zeros.polynomial, root.interval(64), flat[:length], flat[length:])
-    if not event.real.sign(c_22):
-        return exact, 180.0
-    return exact, degrees(atan2(1.0, -float(_place(event)[1])))
+    return BranchCrossing(exact, exact.angle, branch.vertex_signs, branch.b, vertices)
 
 
 def _permutation(

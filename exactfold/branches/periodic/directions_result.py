@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from math import gcd, lcm
+from math import atan2, degrees, gcd, lcm
 from typing import Annotated, Literal, TypedDict
 
 from exactfold._support.documents import (
@@ -82,6 +82,15 @@ class ExactDirection:
     def is_rational(self) -> bool:
         """Whether the direction is rational."""
         return len(self.x) == 1 == len(self.y)
+
+    @property
+    def angle(self) -> float:
+        """The angle in degrees, in (0, 180], in floats."""
+        t = sum(self.interval) / 2
+        x, y = (sum(c * t**k for k, c in enumerate(form)) for form in (self.x, self.y))
+        if not y:
+            return 180.0
+        return degrees(atan2(1.0, x / y))
 
     def __str__(self) -> str:
         if self.is_rational:
@@ -183,6 +192,8 @@ class DirectionsDocument(TypedDict):
     """After a half turn, from just after 1,0: as which branch, from 1, each of them continues."""
     cycles: list[list[Positive]] | None
     """The cycles of the permutation; null if undecided."""
+    families: list[ExactDirectionDocument] | None
+    """All directions with families, proved; null if they are not known."""
     seconds: NotNegative
     """The time that it took."""
 
@@ -196,6 +207,8 @@ class DirectionsCount:
     counter-clockwise, from just after the direction (1, 0) through a half turn, and (1, 0) itself
     comes last. `permutation` says as which branch, from 0, each branch comes back after this half
     turn if it is followed analytically; it is None if that is undecided. Clockwise it is inverted.
+    `families` are all directions in which linear spaces of two or more dimensions have b other than
+    0, proved also where `status` is UNDECIDED; None if they are not known.
     """
 
     pattern: PeriodicPattern
@@ -204,6 +217,7 @@ class DirectionsCount:
     branches: tuple[RollingBranch, ...]
     crossings: tuple[BranchCrossing, ...]
     permutation: tuple[int, ...] | None
+    families: tuple[ExactDirection, ...] | None = None
     seconds: float = field(default=0.0, compare=False)
 
     @cached_property
@@ -249,5 +263,6 @@ class DirectionsCount:
             "crossings": [crossing.to_dict() for crossing in self.crossings],
             "permutation": None if order is None else [k + 1 for k in order],
             "cycles": None if cycles is None else [list(cycle) for cycle in cycles],
+            "families": None if self.families is None else [n.to_dict() for n in self.families],
             "seconds": round(self.seconds, 3),
         }

@@ -7,17 +7,23 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final, cast
 
+from exactfold._support.clock import Clock
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import AlgebraicRoot
+from exactfold.errors import NotApplicableError
 from exactfold.exact.linalg import from_fmpq, to_flint
 from exactfold.exact.numbers import integer_row
-from exactfold.rigidity.equations.periodic import PeriodicProblem
-from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.periodic import PeriodicProblem, Row
+from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_matrices
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.algebraic.quotient import sparse_quadrics
 
 MOST_UNKNOWNS: Final = 6
 """The most unknowns for which the exact engine is run."""
 _FORMS: Final = ((2, 3, 5, 7, 11, 13), (3, -5, 7, -2, 17, -11), (5, 1, -13, 3, 2, 19))
 """Coefficients of linear forms that are 1 in the chart, tried until none vanishes at a solution."""
+_POINT: Final = RootClass((0, 1), (), 1, ())
+"""The one point of a chart without unknowns."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +40,12 @@ class ExactRay:
     entries: tuple[tuple[Fraction, ...], ...]
 
 
-def exact_rays(problem: PeriodicProblem) -> list[ExactRay] | None:
+def exact_rays(problem: PeriodicProblem, clock: Clock) -> list[ExactRay] | None:
     """All rays, by a Groebner basis in a chart without solutions at infinity.
 
     None if there are more than `MOST_UNKNOWNS` unknowns, if a space has more dimensions than one,
-    or if every chart that is tried has solutions at infinity. The number of rays with multiplicity,
-    2^(V - 1), proves that they are all.
+    if every chart that is tried has solutions at infinity, or if the time is over. The number of
+    rays with multiplicity, 2^(V - 1), proves that they are all.
     """
     size = problem.size
     if not 0 < size <= MOST_UNKNOWNS:
@@ -58,7 +64,10 @@ def exact_rays(problem: PeriodicProblem) -> list[ExactRay] | None:
         system = QuadraticSystem.from_rational(
             [[[from_fmpq(x) for x in row] for row in form] for form in forms]
         )
-        solution = groebner(system)
+        try:
+            solution = groebner(system, clock=clock)
+        except NotApplicableError:
+            return None
         if solution.dimension is None:
             return None
         if solution.dimension == 1 << size:
@@ -68,6 +77,47 @@ def exact_rays(problem: PeriodicProblem) -> list[ExactRay] | None:
                 for index in range(root_class.degree)
             ]
     return None
+
+
+def rays_on(problem: PeriodicProblem, basis: Sequence[Row], chart: Row) -> list[ExactRay]:
+    """The rays on the span of rows on z at which a row `chart` is not 0, by a Groebner basis.
+
+    Empty if there are infinitely many, if there are more than `MOST_UNKNOWNS` unknowns, or if the
+    row vanishes on the span. They need not be isolated outside the span.
+
+    >>> from exactfold.pattern.periodic.cell_files import read_cell
+    >>> problem = PeriodicProblem.of(read_cell("yoshimura-cell"), (3, 2))
+    >>> whole = [(Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))]
+    >>> [ray.b for ray in rays_on(problem, whole, (Fraction(0), Fraction(1)))]
+    [1]
+    """
+    values = [_dot(chart, row) for row in basis]
+    place = next((k for k, value in enumerate(values) if value), None)
+    if place is None or len(basis) > MOST_UNKNOWNS + 1:
+        return []
+    from exactfold.solve.algebraic.groebner_bases import classes_of_ideal
+
+    foot = [x / values[place] for x in basis[place]]
+    others = [
+        [x - value * f for x, f in zip(row, foot, strict=True)]
+        for k, (row, value) in enumerate(zip(basis, values, strict=True))
+        if k != place
+    ]
+    lift = [[*row] for row in zip(*others, foot, strict=True)]
+    matrix = to_flint(lift)
+    forms = [matrix.transpose() * to_flint(star.form) * matrix for star in problem.stars]
+    system = QuadraticSystem(
+        primitive_matrices([[[from_fmpq(x) for x in row] for row in f.tolist()] for f in forms])
+    )
+    if len(others):
+        classes = classes_of_ideal(sparse_quadrics(system), len(others)) or ()
+    else:
+        classes = () if any(m[0][0] for m in system.matrices) else (_POINT,)
+    return [
+        _ray(problem, AlgebraicRoot(zeros, index), lift)
+        for zeros in classes
+        for index in range(len(zeros.real_roots(8)))
+    ]
 
 
 def _ray(problem: PeriodicProblem, root: AlgebraicRoot, lift: list[list[Fraction]]) -> ExactRay:

@@ -100,16 +100,16 @@ class Spaces:
         return frozenset(
             v
             for v in range(self.problem.sheet.V)
-            if all(not _dot(row, vector) for row in bends[v] for vector in basis)
+            if all(not dot(row, vector) for row in bends[v] for vector in basis)
         )
 
     def solves(self, basis: Sequence[Row]) -> bool:
         """Whether all K_v vanish on the span of a basis."""
         return all(
-            not _dot(image, other)
+            not dot(turned, other)
             for star in self.problem.stars
             for k, vector in enumerate(basis)
-            for image in [_image(star.form, vector)]
+            for turned in [image(star.form, vector)]
             for other in basis[k:]
         )
 
@@ -117,11 +117,11 @@ class Spaces:
         """The space Z of a solution, or a smaller one by squares, in reduced echelon form."""
         flat = self.flat_on([point])
         rows = [
-            _image(star.form, point) for v, star in enumerate(self.problem.stars) if v not in flat
+            image(star.form, point) for v, star in enumerate(self.problem.stars) if v not in flat
         ]
-        normal = nullspace(rows) if rows else _identity(self.problem.sheet.V)
+        normal = nullspace(rows) if rows else identity(self.problem.sheet.V)
         forms = [self.problem.stars[v].form for v in sorted(flat)]
-        space = _radical(_summed(forms), normal) if forms else [*map(tuple, normal)]
+        space = _radical(summed(forms), normal) if forms else [*map(tuple, normal)]
         while True:
             radicals = (_radical(form, space) for form in forms)
             smaller = next((r for r in radicals if len(r) == len(space) - 1), None)
@@ -131,22 +131,24 @@ class Spaces:
 
     def cover(self, ray: FloatArray) -> Cover | None:
         """A space that holds C_e, and the proof, from floats near a ray of C_e; or None."""
+        found = (self._covered(ray, flat) for flat in self.flat_near(ray))
+        return next((cover for cover in found if cover is not None), None)
+
+    def flat_near(self, ray: FloatArray) -> list[frozenset[int]]:
+        """The vertices that may be flat at a ray that is known in floats: a few sets to try."""
         lines = floats([star.functional for star in self.problem.stars])
         sizes = np.abs(lines @ ray) / np.linalg.norm(lines, axis=1)
-        tried: set[frozenset[int]] = set()
-        for small in _FLAT:
-            flat = frozenset(np.flatnonzero(sizes < small).tolist())
-            if flat not in tried:
-                tried.add(flat)
-                found = self._covered(ray, flat)
-                if found is not None:
-                    return found
-        return None
+        sets = (frozenset(np.flatnonzero(sizes < small).tolist()) for small in _FLAT)
+        return list(dict.fromkeys(sets))
+
+    def level(self, flat: frozenset[int]) -> tuple[Row, ...]:
+        """A basis of the heights at which some vertices are flat."""
+        rows = [row for v in flat for row in self.problem.bends_at[v]]
+        return echelon(nullspace(rows) if rows else identity(self.problem.sheet.V))
 
     def _covered(self, ray: FloatArray, flat: frozenset[int]) -> Cover | None:
         rows = [row for v in flat for row in self.problem.bends_at[v]]
-        size = self.problem.sheet.V
-        level = echelon(nullspace(rows) if rows else _identity(size))
+        level = self.level(flat)
         if not level:
             return None
         near: FloatArray | None = ray
@@ -205,8 +207,8 @@ class Spaces:
 
     def _rounded(self, near: FloatArray, basis: Sequence[Row], rows: Sequence[Row]) -> Row | None:
         """A rational point of a space near a float point, on which the given rows vanish."""
-        inner = [[_dot(row, vector) for vector in basis] for row in rows]
-        weights = nullspace(inner) if inner else _identity(len(basis))
+        inner = [[dot(row, vector) for vector in basis] for row in rows]
+        weights = nullspace(inner) if inner else identity(len(basis))
         vectors = [combined(w, basis) for w in weights]
         if not vectors:
             return None
@@ -214,20 +216,23 @@ class Spaces:
         return combined([Fraction(round(_GRID * x), _GRID) for x in at.tolist()], vectors)
 
 
-def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+def dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
+    """The value of a row at a vector."""
     return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
 
 
-def _image(form: Sequence[Row], vector: Sequence[Fraction]) -> Row:
-    return tuple(_dot(row, vector) for row in form)
+def image(form: Sequence[Row], vector: Sequence[Fraction]) -> Row:
+    """The polar form with a vector, as a row."""
+    return tuple(dot(row, vector) for row in form)
 
 
 def combined(weights: Sequence[Fraction], vectors: Sequence[Sequence[Fraction]]) -> Row:
     """The sum of vectors with weights."""
-    return tuple(_dot(weights, column) for column in zip(*vectors, strict=True))
+    return tuple(dot(weights, column) for column in zip(*vectors, strict=True))
 
 
-def _summed(forms: Sequence[Sequence[Row]]) -> list[Row]:
+def summed(forms: Sequence[Sequence[Row]]) -> list[Row]:
+    """The sum of forms."""
     return [
         tuple(sum(entries, Fraction(0)) for entries in zip(*rows, strict=True))
         for rows in zip(*forms, strict=True)
@@ -236,12 +241,13 @@ def _summed(forms: Sequence[Sequence[Row]]) -> list[Row]:
 
 def _radical(form: Sequence[Row], basis: Sequence[Sequence[Fraction]]) -> list[Row]:
     """A basis of the radical of a form on the span of a basis."""
-    images = [_image(form, row) for row in basis]
-    weights = nullspace([[_dot(image, row) for row in basis] for image in images]) if basis else []
+    images = [image(form, row) for row in basis]
+    weights = nullspace([[dot(turned, row) for row in basis] for turned in images]) if basis else []
     return [combined(w, basis) for w in weights]
 
 
-def _identity(size: int) -> list[list[Fraction]]:
+def identity(size: int) -> list[list[Fraction]]:
+    """The rows of the identity."""
     return [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
 
 

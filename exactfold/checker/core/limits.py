@@ -27,6 +27,7 @@ MOST_COMPARED = 10**9  # pairs of edges with overlapping x-ranges, compared one 
 MOST_FRAMES = 1000  # frames of a FOLD file that are searched for a flat one
 MOST_INHERITED = 100  # frames through which one frame inherits
 MOST_DEPTH = 200  # nested elements of an SVG file, counted after `use` has been expanded
+MOST_MOVED = 10**6  # lattice vectors by which a corner of a periodic cell is moved
 MOST_USED = 100_000  # elements that `use` repeats
 MOST_SELECTORS = 1000  # selectors with several parts in the style sheets of an SVG file
 MOST_TEXT = 4000  # characters of an attribute or of a style, and of the transforms of an element

@@ -46,7 +46,7 @@ def count_panel_cell(cell: object, *, limit: float | None = None) -> PanelCell:
     >>> [(m.dimension, m.direction, str(m.folds)) for m in miura]
     [(2, (0, 1), 'proved'), (1, None, 'proved')]
     >>> count_panel_cell("square-twist-cell").field_names
-    ('Q(sqrt (1/5))',)
+    ('Q(sqrt 5)',)
     """
     start, clock = time.perf_counter(), Clock(limit)
     pattern = as_cell(cell)

@@ -7,12 +7,14 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Any, TypeAlias
 
+from exactfold.checker.core.limits import MOST_MOVED
 from exactfold.errors import (
     DegenerateFaceError,
     MalformedPatternError,
     NotPeriodicError,
     NumberError,
     OverlapError,
+    TooLargeError,
 )
 from exactfold.exact.numbers import shown
 from exactfold.pattern.crease_pattern import Point
@@ -65,11 +67,8 @@ def corner_triples(faces: Iterable[Any], count: int) -> list[Face]:
             )
         read = [_corner(face, corner, count) for corner in corners]
         result.append((read[0], read[1], read[2]))
-    if len(result) != 2 * count:
-        raise NotPeriodicError(
-            f"there are {len(result)} faces for {count} vertices in the cell: a triangulated cell "
-            f"has twice as many faces as vertices, here {2 * count}"
-        )
+    if not result:
+        raise MalformedPatternError("the cell has no faces")
     return result
 
 
@@ -82,8 +81,13 @@ def _corner(face: int, corner: Any, count: int) -> Corner:
     v, i, j = entries
     if not 0 <= v < count:
         raise MalformedPatternError(
-            f"face {face} uses vertex {v}, but the cell has the vertices 0 to {count - 1}",
+            f"face {face} uses vertex {shown(v)}, but the cell has the vertices 0 to {count - 1}",
             faces=[face],
+        )
+    if max(abs(i), abs(j)) > MOST_MOVED:
+        raise TooLargeError(
+            f"face {face}: the corner {shown(corner)} is moved by more than {MOST_MOVED} lattice "
+            "vectors, which is not read: take a nearer translate"
         )
     return v, i, j
 
@@ -196,8 +200,8 @@ def named(side: Side) -> str:
     >>> named((0, 3, 1, 0)), named((0, 3, 0, 0))
     ('0-3 moved by (1, 0)', '0-3')
     """
-    u, v, i, j = side
-    return f"{u}-{v}" + (f" moved by ({i}, {j})" if (i, j) != (0, 0) else "")
+    u, v, i, j = map(shown, side)
+    return f"{u}-{v}" + (f" moved by ({i}, {j})" if (i, j) != ("0", "0") else "")
 
 
 def _overlapping(faces: Sequence[Face], place: Callable[[Corner], Point]) -> int:

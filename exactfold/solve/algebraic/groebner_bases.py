@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import NotApplicableError, SolverError, UsageError
 from exactfold.exact.univariate import from_rational_poly
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
@@ -26,10 +27,13 @@ from exactfold.solve.algebraic.quotient import (
 from exactfold.solve.numeric.homotopy import homotopy
 
 ENGINES = ("roots", "lifting", "flint", "sympy", "msolve")
+_STOPPED = 5  # up to this size a basis over Q is begun under a limit of time
 _SMALL = 4  # up to this size a basis over Q is as fast as lifting
 
 
-def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
+def groebner(
+    system: QuadraticSystem, *, engine: str = "auto", clock: Clock = UNLIMITED
+) -> ExactSolution:
     """All complex zeros of a system of quadrics with their multiplicities, over Q.
 
     The engines "flint" and "sympy" compute a reduced grevlex Groebner basis. It gives the quotient
@@ -52,11 +56,14 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
     above the first that applies of roots, lifting, and FLINT. Every class is verified by exact
     substitution.
 
+    When the time of `clock` is over, lifting stops and no other engine begins. As a basis over Q
+    cannot be stopped, "auto" begins it under a limit only for up to five unknowns.
+
     A system with infinitely many zeros has the `dimension` None; the dimension and the degree of
     its zero set are `krull_dimension` and `degree`. An inconsistent system has the `dimension` 0.
     Raises `UsageError` for an unknown engine, `NotApplicableError` if the given engine does not
-    apply, `PackageMissingError` without msolve, and `SolverError` if msolve fails or a check
-    fails (an internal error, or a wrong answer of msolve).
+    apply or the time is over, `PackageMissingError` without msolve, and `SolverError` if msolve
+    fails or a check fails (an internal error, or a wrong answer of msolve).
 
     >>> circle = [[1, 0, 0], [0, 1, 0], [0, 0, -2]]
     >>> axes = [[0, 1, 0], [1, 0, 0], [0, 0, 0]]
@@ -81,7 +88,7 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
                 "this engine needs 2^n different zeros, none at infinity: take another engine"
             )
     if engine == "lifting" or large:
-        lifted = lifted_classes(system)
+        lifted = lifted_classes(system, clock)
         if lifted is not None:
             return _verified(system, system.bezout_number, lifted, "lifting")
         if engine == "lifting":
@@ -91,6 +98,13 @@ def groebner(system: QuadraticSystem, *, engine: str = "auto") -> ExactSolution:
             )
     if engine == "msolve":
         return _verified(system, system.bezout_number, msolve_classes(system), engine)
+    if clock.passed:
+        raise NotApplicableError(clock.said)
+    if large and clock.limit is not None and system.size > _STOPPED:
+        raise NotApplicableError(
+            f"two fast engines do not apply, and a Groebner basis over Q in {system.size} unknowns "
+            "is not begun under a limit of time"
+        )
     chosen = "flint" if engine != "sympy" else "sympy"
     basis = _BASES[chosen](system)
     algebra = from_groebner_basis(basis, system.size)

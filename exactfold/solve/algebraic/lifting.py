@@ -16,6 +16,7 @@ from math import isqrt
 
 from flint import nmod_poly
 
+from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import SolverError
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
 from exactfold.solve.algebraic.coranks import with_proved_multiplicities
@@ -30,14 +31,17 @@ _SEEDS_TRIED = 8
 _LARGEST = 7  # with 8 unknowns, lifting takes more than ten minutes
 
 
-def lifted_classes(system: QuadraticSystem) -> tuple[RootClass, ...] | None:
+def lifted_classes(
+    system: QuadraticSystem, clock: Clock = UNLIMITED
+) -> tuple[RootClass, ...] | None:
     """All zeros of a system without zeros at infinity, with proved multiplicities 2^(corank).
 
     The result is None if the method does not apply: zeros are at infinity or not isolated, a
-    multiplicity is not 2^c for a Jacobian of corank c, there are more than 7 unknowns, or both
-    primes are unlucky. Otherwise the result is proved. `RootClass.verify` proves every class. A
-    resultant that is not zero modulo a prime (`modular_quotient`) proves that there are finitely
-    many zeros, 2^n in all. `with_proved_multiplicities` proves the multiplicities, and so that no
+    multiplicity is not 2^c for a Jacobian of corank c, there are more than 7 unknowns, both primes
+    are unlucky, or the time of `clock` is over. Otherwise the result is proved. `RootClass.verify`
+    proves every class. A resultant that is not zero modulo a prime (`modular_quotient`) proves that
+    there are finitely many zeros, 2^n in all. `with_proved_multiplicities` proves the
+    multiplicities, and so that no
     zero is missing.
 
     >>> line_pair, circle = ((0, 0, 0), (0, 1, 0), (0, 0, 0)), ((1, 0, 0), (0, 1, 0), (0, 0, -9))
@@ -45,13 +49,13 @@ def lifted_classes(system: QuadraticSystem) -> tuple[RootClass, ...] | None:
     [(1, 2), (1, 2)]
     """
     for prime in PRIMES if system.size <= _LARGEST else ():
-        classes = _from_prime(system, prime)
+        classes = _from_prime(system, prime, clock)
         if classes is not None:
             return classes
     return None
 
 
-def _from_prime(system: QuadraticSystem, prime: int) -> tuple[RootClass, ...] | None:
+def _from_prime(system: QuadraticSystem, prime: int, clock: Clock) -> tuple[RootClass, ...] | None:
     quotient = modular_quotient(system, prime)
     if quotient is None:
         return None
@@ -61,7 +65,7 @@ def _from_prime(system: QuadraticSystem, prime: int) -> tuple[RootClass, ...] | 
             continue
         whole = []
         for start in starts:
-            lifted = _lift(system, form, start, prime)
+            lifted = _lift(system, form, start, prime, clock)
             if lifted is None:
                 return None
             whole += lifted.factors()
@@ -70,7 +74,7 @@ def _from_prime(system: QuadraticSystem, prime: int) -> tuple[RootClass, ...] | 
 
 
 def _lift(
-    system: QuadraticSystem, form: Sequence[int], start: ModularClass, prime: int
+    system: QuadraticSystem, form: Sequence[int], start: ModularClass, prime: int, clock: Clock
 ) -> RootClass | None:
     """Newton's method with quadratic convergence, until the reconstruction passes the proof.
 
@@ -95,12 +99,16 @@ def _lift(
     else:
         return None
     power = prime
-    while power.bit_length() <= _precision_limit(system):
-        power *= power
+    while power.bit_length() <= _precision_limit(system) and not clock.passed:
+        before, power = power, power * power
         ring = ResidueRing.over(power, [int(c) for c in ring.modulus.coeffs()])
         [v], block, inverse = ring.lift([v]), ring.lift(block), ring.lift(inverse)
         block = ring.refined(block, equations.block(ring, v))
         residues, _ = equations.evaluate(ring, v, block)
+        if any(int(c) % before for residue in residues for c in residue.coeffs()):
+            return (
+                None  # the last step did not double the precision: the zero is more than 2^c-fold
+            )
         v = [x - ring.dot(line, residues) for x, line in zip(v, inverse, strict=True)]
         x = equations.pushed_forward(ring, v)
         shift = ring.dot(ring.integers(form), x) - ring.element([0, 1])

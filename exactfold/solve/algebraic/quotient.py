@@ -63,7 +63,7 @@ def sparse_quadrics(system: QuadraticSystem) -> list[dict[Exponent, int]]:
     >>> sparse_quadrics(QuadraticSystem((((1, 2), (2, 0)),)))
     [{(2,): 1, (1,): 4}]
     """
-    size = system.size
+    size = len(system.matrices[0]) - 1 if system.matrices else 0  # there may be more quadrics
     units = [tuple(int(i == k) for i in range(size)) for k in range(size + 1)]
     result = []
     for matrix in system.matrices:

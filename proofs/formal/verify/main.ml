@@ -1,50 +1,24 @@
 (* exactfold-verify: verifies certificates of exactfold with a program that is proved in Coq. *)
 
 open Reading
+open Sheets
 module V = Verified
 
 let usage = "usage: exactfold-verify FILE\n\n\
-  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a convex\n\
-  triangulated sheet, and says what of the file it does not verify.\n\
+  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a triangulated\n\
+  sheet that is convex, or has four corners of which one is reflex, and says what of the file it does not verify.\n\
   Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
   70 a defect, or memory is short.\n"
-
-let plural n word =
-  let ending = if n = 1 then word else if word.[String.length word - 1] = 'x' then
-    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ "s" in
-  Printf.sprintf "%d %s" n ending
-let not_verified text = Printf.printf "not verified here: %s\n" text
-let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
-
-(* The drawing and the numbered folds that are proposed are those of the file. *)
-let belongs sheet (d : V.drawing) (p : V.prepared) =
-  let numbered = List.mapi (fun name (i, j, l, m) -> (name, (((i, j), l), m))) (Array.to_list (folds sheet)) in
-  if d.points <> Array.to_list sheet.points || d.triangles <> List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles
-    || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
-  then failwith "the sheet that is proposed is not that of the file"
-
-let shown_sheet sheet (d : V.drawing) =
-  Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
-    (plural (Array.length sheet.points) "vertex") (List.length d.inside) (List.length d.border)
-    (plural (List.length sheet.triangles) "triangle") (plural (Array.length (folds sheet)) "fold") sheet.digest
 
 (* --- all branches --- *)
 
 (* [flat] is the number of letters F, of which the formal proof says nothing. *)
 type root = { bits : int; center : Z.t array; letters : int -> bool option; flat : int }
 
-let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
-
 let signed bytes at width =
   let negative = Char.code (Bytes.get bytes (at + width - 1)) > 127 in
   let n = Z.of_bits (Bytes.sub_string bytes at width) in
   if negative then Z.sub n (Z.shift_left Z.one (8 * width)) else n
-
-let letter_of root text k = match text.[k] with
-  | 'M' -> Some false
-  | 'V' -> Some true
-  | 'U' | 'F' -> None
-  | c -> refuse "root %d has a fold with the letter %c" root c
 
 (* The roots of a block, which are read one by one. *)
 let block size folds number length data =
@@ -78,6 +52,22 @@ let block size folds number length data =
         letters = fun k -> Some (bit index k) }
     | _ -> invalid "root %d of block %d is given twice or not at all" index number
 
+(* The chart of a sheet with a reflex corner: the height of this corner, in units of 2^-bits, over the heights of
+   the vertices inside, so that a functional of both is 1. *)
+let notch_chart j corner inside =
+  let vertices = corner :: Array.to_list inside in
+  only (String.concat " " (List.map string_of_int vertices)) j;
+  let names = match j with Entries pairs -> List.map fst pairs | _ -> refuse "the chart is not that of the closed notch" in
+  let weights = List.filter_map (fun v -> let name = string_of_int v in
+    if List.mem name names then Some (v, rational "a weight of the chart" (entry name j)) else None) vertices in
+  let unit = List.fold_left (fun n (_, (_, q)) -> Z.lcm n q) Z.one weights in
+  let whole = List.map (fun (v, (p, q)) -> (v, Z.mul p (Z.div unit q))) weights in
+  let lead = match List.assoc_opt corner whole with
+    | Some w when not (Z.equal w Z.zero) -> w
+    | _ -> refuse "the chart does not fix the height of the reflex corner" in
+  let rest h = List.fold_left (fun s (v, w) -> if v = corner then s else Z.add s (Z.mul w h.(v))) Z.zero whole in
+  fun h bits -> Z.div (Z.sub (Z.shift_left unit bits) (rest h)) lead
+
 let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
 
 let all_branches header blocks claims =
@@ -87,45 +77,53 @@ let all_branches header blocks claims =
   only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches" claims;
   ignore (entry "provenance" header);
   if string "kind" (entry "kind" evidence) <> "chambers" then refuse "unknown kind of evidence";
-  let sheet = sheet (entry "pattern" header) in
-  if items "triangles" (entry "triangles" evidence) <> [] then
-    refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
-  let d = Proposing.drawing sheet in
-  if entry "chart" evidence <> Null then refuse "the chart is one of a sheet with a reflex corner";
-  let inside = Array.of_list (List.rev d.inside) in
+  let file = sheet (entry "pattern" header) in
+  let triangles = items "triangles" (entry "triangles" evidence) in
+  let t = place_of file (List.map (triangulated file " multipliers") triangles) in
+  let { d; p; corner; inside; _ } = t in
   let size = Array.length inside in
-  if List.length d.border <> 4 then refuse "the sheet has %d boundary vertices, not four" (List.length d.border);
+  if t.rim <> 4 then refuse "the sheet has %d boundary vertices, not four" t.rim;
   if size = 0 || size > 30 then refuse "%d vertices inside: between 1 and 30 are verified" size;
+  let lifted = match corner, entry "chart" evidence with
+    | None, Null -> None
+    | None, _ -> refuse "the chart is one of a sheet with a reflex corner"
+    | Some r, chart -> Some (notch_chart chart r inside) in
   let length = small ~least:1 "block" (entry "block" evidence) in
   if 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
-  shown_sheet sheet d;
-  let p = Proposing.prepared sheet d in
-  belongs sheet d p;
+  shown_sheet t;
+  check_sheet t;
   let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
-  let claim key = Z.to_string (Z.of_int (small key (entry key claims))) in
+  let claim key = match entry key claims with
+    | Number n -> Z.to_string (digits key n)
+    | _ -> refuse "%s is no number" key in
   List.iter (fun (key, expected) -> agrees key (claim key) expected)
-    [ ("interior", string_of_int size); ("boundary", "4"); ("folds", string_of_int folds); ("degrees_of_freedom", "1");
-      ("distinct", count); ("with_multiplicity", count); ("real", count); ("nonreal", "0") ];
-  agrees "sha256" (string "sha256" (entry "sha256" claims)) sheet.digest;
+    [ ("interior", string_of_int (size + List.length t.hidden)); ("boundary", "4");
+      ("folds", string_of_int (Array.length (Reading.folds file))); ("degrees_of_freedom", "1"); ("distinct", count);
+      ("with_multiplicity", Z.to_string (Z.shift_left Z.one (size + List.length t.hidden))); ("real", count); ("nonreal", "0") ];
+  agrees "sha256" (string "sha256" (entry "sha256" claims)) file.digest;
   let continued = string "true_branches" (entry "true_branches" claims) in
   if continued <> "proved" then invalid "the claim \"true_branches\" is not \"proved\", as in every file of this version";
   let blocks = Array.of_list blocks in
-  let slot = Array.make (Array.length sheet.points) (-1) in
+  let slot = Array.make (Array.length file.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
-  let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) and rough = Proposing.rough p in
-  let unit = List.nth d.border 3 in
+  let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) and rough = Proposing.rough corner p in
   let number e = let n = ref 0 in Array.iteri (fun k v -> if not (e v) then n := !n lor (1 lsl k)) inside; !n in
   let now = ref (-1, fun _ -> assert false) in
   let root n =
     if fst !now <> n / length then now := (n / length, block size folds (n / length) length blocks.(n / length));
     snd !now (n mod length) in
   let heights root bits =
-    let h = Array.make (Array.length sheet.points) Z.zero in
+    let h = Array.make (Array.length file.points) Z.zero in
     let shift = bits - root.bits in
     Array.iteri (fun k v -> let c = root.center.(k) in
       h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
-    h.(unit) <- Z.shift_left Z.one bits;
+    (match lifted, corner with
+    | Some height, Some r -> h.(r) <- height h bits
+    | _ -> h.(List.nth d.border 3) <- Z.shift_left Z.one bits);
     h in
+  let passes e h letters = match corner with
+    | None -> V.passes p (fun _ -> false) e (fun u -> h.(u)) letters
+    | Some r -> V.raised_passes d p r e (fun u -> h.(u)) letters in
   let current = ref (-1) and flat = ref 0 in
   (* What is proposed for a sign vector: with more and more digits, until floating point, or if careful the
      verified test itself, finds all letters decided. It depends on the sign vector alone, and its array is
@@ -146,8 +144,8 @@ let all_branches header blocks claims =
             let h = heights root bits in
             if not (careful || more = [] || Proposing.clear rough h bits aim) then refine more
             else begin
-              for _ = 0 to (bits - 40) / 40 do Proposing.step lights h bits aim done;
-              if careful && not (V.passes p e (fun u -> h.(u)) root.letters) then refine more else h
+              for _ = 0 to (bits - 40) / 40 do Proposing.step lights corner h bits aim done;
+              if careful && not (passes e h root.letters) then refine more else h
             end in
         let h = refine precisions in
         let done_ = (1 lsl size) - n in
@@ -155,93 +153,34 @@ let all_branches header blocks claims =
         flat := !flat + root.flat;
         proposed := (n, h, root.letters)
       end in
-    let top e = propose e; let _, h, _ = !proposed in h.(unit) in
+    let top e = propose e; let _, h, _ = !proposed in h.(List.nth d.border 3) in
     let given e = propose e; let _, h, _ = !proposed in fun u -> h.(u) in
     let asked e = propose e; let _, _, letters = !proposed in letters in
-    try V.verify_all d p top given asked with Exit -> false in
-  if not (V.sound d p) then unverified "the sheet is not a convex triangulated one";
+    try match corner with
+      | None -> V.verify_all d p top given asked
+      | Some r -> V.verify_all_notched d p r given asked
+    with Exit -> false in
   if not (verify false || verify true) then begin
     let n = !current in
-    if n >= 0 then List.iter (fun (b : V.hub) -> if not (V.is_bent (root n).letters b) then
+    if n >= 0 then List.iter (fun (b : V.hub) -> if corner <> Some b.at_vertex && not (V.is_bent (root n).letters b) then
       refuse "root %d: vertex %d has no fold with the letter M or V" n b.at_vertex) p.V.hubs;
     unverified "root %d did not pass the test" n
   end;
   if size > 13 then prerr_newline ();
   Printf.printf "VERIFIED  exactly %s branches to second order, complex ones included; all are real and\n\
-    \          simple, one for each sign vector; their folds have the letters M and V of the file.\n\
-    \          By theorem all_verified.\n" count;
+    \          %s, one for each sign vector; their folds have the letters M and V of the file.\n\
+    \          By theorem %s.\n" count (if t.parts = [] then "simple" else "different")
+    (match corner, t.parts with
+    | None, [] -> "all_verified"
+    | None, _ -> "all_emptied_verified"
+    | Some _, [] -> "all_notched_verified"
+    | Some _, _ -> "all_notched_emptied_verified");
+  Option.iter raised corner;
+  stay_flat t;
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
+  if t.parts <> [] then not_verified "the multiplicity of each branch";
+  if corner <> None then not_verified "that the chart of the file names this side of each branch";
   not_verified "that every branch continues to a true motion"
-
-(* --- one branch --- *)
-
-(* Whether the boundary saddle of heights is positive: their sum with the weights of the affine dependency of the
-   four boundary vertices. The vertex with the smallest number has a positive weight, or, if the others are in
-   line, both ends of this line. The order of the four does not matter. *)
-let positive_saddle sheet (a, b, c, d) h =
-  let turn x y z =
-    let (px, py), (qx, qy), (rx, ry) = sheet.points.(x), sheet.points.(y), sheet.points.(z) in
-    Z.sub (Z.mul (Z.sub qx px) (Z.sub ry py)) (Z.mul (Z.sub qy py) (Z.sub rx px)) in
-  let weights = [ (a, turn b c d); (b, Z.neg (turn a c d)); (c, turn a b d); (d, Z.neg (turn a b c)) ] in
-  let first = Z.sign (List.assoc (min (min a b) (min c d)) weights) in
-  let most = List.fold_left (fun n (_, w) -> n + Z.sign w) 0 weights in
-  let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
-  Z.sign sum * (if first <> 0 then first else most) > 0
-
-let one_branch data =
-  let claims = entry "claims" data and evidence = entry "evidence" data in
-  only "format version pattern claims evidence provenance" data;
-  only "gauge vertex_signs assignment squared_distance" claims;
-  only "emptied heights denominator" evidence;
-  let sheet = sheet (entry "pattern" data) in
-  if items "emptied" (entry "emptied" evidence) <> [] then
-    refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
-  let d = Proposing.drawing sheet in
-  shown_sheet sheet d;
-  let p = Proposing.prepared sheet d in
-  belongs sheet d p;
-  let h = Array.of_list (List.map (whole "a height") (items "heights" (entry "heights" evidence))) in
-  if Z.leq (whole "denominator" (entry "denominator" evidence)) Z.zero then invalid "the denominator is not positive";
-  let inside = Array.of_list (List.rev d.V.inside) in
-  let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
-  let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
-  if Array.length h <> Array.length sheet.points || Array.length signs <> Array.length inside then
-    refuse "the numbers of heights, signs and vertices differ";
-  let gauge = string "gauge" (entry "gauge" claims) in
-  if gauge = "saddle" then begin
-    match d.border with
-    | [ w; x; y; z ] -> if not (positive_saddle sheet (w, x, y, z) h) then invalid "the boundary saddle is not positive"
-    | _ -> invalid "the gauge \"saddle\" needs four boundary vertices"
-  end
-  else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim";
-  let claimed = Hashtbl.create 64 in
-  Array.iteri (fun k v -> Hashtbl.replace claimed v signs.(k)) inside;
-  (* a vertex that is claimed to be flat lies in both closed nappes: the test is made in that of the heights *)
-  let ups = Array.make (Array.length h) false in
-  List.iter (fun (b : V.hub) ->
-    let v = b.at_vertex in
-    let curved, side = V.measured (fun u -> h.(u)) h.(v) b.wedges in
-    if Z.equal curved Z.zero then
-      refuse "the heights have curvature 0 at vertex %d; heights with positive curvatures are verified here" v;
-    ups.(v) <- (if Hashtbl.find claimed v = 0 then Z.gt side Z.zero else Hashtbl.find claimed v > 0)) p.V.hubs;
-  let text = string "assignment" (entry "assignment" claims) in
-  if String.length text <> List.length p.V.folds then refuse "the number of letters is wrong";
-  let letters = letter_of 0 text in
-  if not (V.sound d p) then unverified "the sheet is not a convex triangulated one";
-  if not (V.verify_one d p (fun v -> ups.(v)) (fun u -> h.(u)) letters) then unverified "the branch did not pass the test";
-  let bent = List.filter (V.is_bent letters) p.V.hubs in
-  List.iter (fun (b : V.hub) -> if Hashtbl.find claimed b.at_vertex = 0 then
-    invalid "vertex %d has the sign 0, but a fold with a letter M or V" b.at_vertex) bent;
-  let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) 0 signs in
-  let others = Array.length inside - List.length bent and flat = flats text in
-  Printf.printf "VERIFIED  exactly one solution over these boundary heights lies in the closed nappes of %s.\n\
-    \          It has the letters M and V of the file, and the signs of the %s where they\n\
-    \          end. By theorem one_verified.\n"
-    (if zeros = 0 then "these signs" else "these signs,\n          at vertices with the sign 0 those of the heights")
-    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex");
-  if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
-  if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
-  not_verified "the squared distance"
 
 (* --- files --- *)
 
@@ -271,7 +210,7 @@ let verify path =
   else begin
     let data = parse text in
     match kind data with
-    | "exactfold branch", "1" -> one_branch data
+    | "exactfold branch", "1" -> Branch.one_branch data
     | format, version -> known format version
   end
 

@@ -50,26 +50,49 @@ let pinned sheet = function
     choose 1
   | cycle -> cycle
 
-(* A boundary with a reflex corner is refused by name; the verified program refuses it, too. *)
-let refuse_reflex sheet rim fans =
-  List.iter (fun v ->
-    let rec ends first = function [ last ] -> (first, last) | _ :: l -> ends first l | [] -> (first, first) in
-    let first, last = ends (List.hd fans.(v)) fans.(v) in
-    let p = sheet.points.(v) in
-    if Z.lt (zturn (minus sheet.points.(first) p) (minus sheet.points.(last) p)) Z.zero then
-      refuse "the corner at vertex %d is reflex: the formal proof is about convex sheets" v) rim
+(* The sheet without the vertices inside triangulated triangles, which are then on no face; which vertices these are;
+   the faces that it shares with the file; and the triangles, with the faces that fill them in the file. *)
+let emptied sheet triangles =
+  let owner = Array.make (Array.length sheet.points) (-1) in
+  List.iteri (fun k (_, inside) -> List.iter (fun v -> owner.(v) <- k) inside) triangles;
+  let filling = Array.make (List.length triangles + 1) [] in
+  List.iter (fun (a, b, c) -> let k = 1 + max owner.(a) (max owner.(b) owner.(c)) in
+    filling.(k) <- (a, b, c) :: filling.(k)) (List.rev sheet.triangles);
+  let part k ((a, b, c), inside) : V.part =
+    let own = filling.(k + 1) in
+    let next = next_of { sheet with triangles = own } in
+    let fans = Array.mapi (fun v steps -> if steps = [] then [] else fst (fan v steps)) next in
+    { corner_a = a; corner_b = b; corner_c = c; hidden = inside;
+      pieces = List.map (fun (x, y, z) -> ((x, y), z)) own; fans_in = Array.to_list fans } in
+  let common = filling.(0) in
+  ({ sheet with triangles = List.map fst triangles @ common }, Array.map (fun k -> k >= 0) owner, common,
+    List.mapi part triangles)
 
-let drawing sheet : V.drawing =
+(* The reflex corner on a boundary of four, and the sheet whose first triangle closes its notch. Other boundaries
+   with such a corner are refused by name; the verified program refuses them, too. *)
+let closed sheet hidden =
   List.iter (fun (a, b, c) -> let at v = sheet.points.(v) in
     if Z.leq (zturn (minus (at b) (at a)) (minus (at c) (at a))) Z.zero then
       refuse "the face %d, %d, %d does not run counter-clockwise" a b c) sheet.triangles;
+  let fans = Array.mapi (fun v steps -> if hidden.(v) then ([], true) else fan v steps) (next_of sheet) in
+  let rim = List.filter (fun v -> not (snd fans.(v))) (List.init (Array.length fans) Fun.id) in
+  let ends v = let l = fst fans.(v) in (List.hd l, List.nth l (List.length l - 1)) in
+  let turned v = let first, last = ends v and p = sheet.points.(v) in
+    Z.sign (zturn (minus sheet.points.(first) p) (minus sheet.points.(last) p)) in
+  match List.filter (fun v -> turned v < 0) rim with
+  | [] -> (sheet, None)
+  | r :: _ when List.length rim = 4 ->
+    let first, last = ends r in
+    ({ sheet with triangles = (r, last, first) :: sheet.triangles }, Some r)
+  | r :: _ -> refuse "the corner at vertex %d is reflex, of %d: only sheets with four corners may have one" r (List.length rim)
+
+let drawing sheet hidden : V.drawing =
   let next = next_of sheet in
-  let fans = Array.mapi (fun v steps -> fan v steps) next in
-  let all = List.init (Array.length fans) Fun.id in
+  let fans = Array.mapi (fun v steps -> if hidden.(v) then ([], true) else fan v steps) next in
+  let all = List.filter (fun v -> not hidden.(v)) (List.init (Array.length fans) Fun.id) in
   let inside, rim = List.partition (fun v -> snd fans.(v)) all in
   if rim = [] then refuse "the sheet has no boundary";
   let fans = Array.map fst fans in
-  refuse_reflex sheet rim fans;
   let cycle = border (List.hd rim) fans (List.length rim) in
   if List.length cycle <> List.length rim then refuse "the boundary is not one cycle through its %d vertices" (List.length rim);
   (* the greatest number first, so that the sign vectors come in the order of the roots *)
@@ -178,8 +201,9 @@ let light slot (b : V.hub) =
     (w.left, w.right, slot.(w.left), slot.(w.right), ratio w.mixed b.scale, ratio w.square b.scale, ratio w.square' b.scale) in
   { hub = b; place = slot.(b.at_vertex); corners = Array.of_list (List.map corner b.wedges) }
 
-(* One step of Newton's method from heights h in units of 2^-bits towards curvatures 2^-aim. *)
-let step lights h bits aim =
+(* One step of Newton's method from heights h in units of 2^-bits towards curvatures 2^-aim; that of the vertex
+   [kept] stays as it is. *)
+let step lights kept h bits aim =
   let n = Array.length lights in
   let unit = Z.shift_left Z.one bits in
   let f = Array.map (fun x -> ratio x unit) h in
@@ -188,7 +212,7 @@ let step lights h bits aim =
   Array.iteri (fun row t ->
     let v = t.hub.V.at_vertex in
     let k, _ = V.measured (fun u -> h.(u)) h.(v) t.hub.V.wedges in
-    b.(row) <- ldexp 1. (-aim) -. ratio k (Z.mul t.hub.V.scale unit2);
+    b.(row) <- if kept = Some v then 0. else ldexp 1. (-aim) -. ratio k (Z.mul t.hub.V.scale unit2);
     let line = a.(row) in
     let add slot x = if slot >= 0 then line.(slot) <- line.(slot) +. x in
     Array.iter (fun (l, r, sl, sr, p, q, q') ->
@@ -206,9 +230,10 @@ let step lights h bits aim =
 
 (* Folds in floating point, to guess whether heights with curvatures 2^-aim decide all letters: ends,
    coefficients, and what the squared bend has to exceed. *)
-let rough (p : V.prepared) =
+let rough kept (p : V.prepared) =
   let float x = ratio x Z.one in
-  let total = List.fold_left (fun s (b : V.hub) -> Z.add s (Z.mul b.share b.scale)) Z.zero p.hubs in
+  let total = List.fold_left (fun s (b : V.hub) ->
+    if kept = Some b.at_vertex then s else Z.add s (Z.mul b.share b.scale)) Z.zero p.hubs in
   let fold (f : V.fold_form) =
     let ((i, j), l), m = f.ends in
     (i, j, l, m, float f.along, float f.toward_l, float f.toward_m, ratio (Z.mul f.slack2 total) p.units) in

@@ -112,7 +112,7 @@ def test_rigid_panels_in_json_and_words() -> None:
     assert (planar["letters"], planar["planar"], planar["folds"]) == ("MVMMVVVM", True, "proved")
     words = run("count", "square-twist-cell").stdout
     assert words.startswith("2 components of periodic motions of rigid panels - PROVED")
-    assert "Q(sqrt (1/5))" in words
+    assert "Q(sqrt 5)" in words
     drawing = run("count", "miura", "--periodic", "--cell", "4,2")
     assert drawing.exit_code == PROVED
     assert "across 0,1" in drawing.stdout

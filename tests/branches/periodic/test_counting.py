@@ -10,6 +10,7 @@ import pytest
 from exactfold import PROVED, checker
 from exactfold.branches import AlgebraicLine, HeightSpace, count_periodic, periodic_certificate
 from exactfold.branches.periodic import counting
+from exactfold.branches.periodic.exactly import rays_on
 from exactfold.branches.periodic.lines import QuadraticLine
 from exactfold.branches.periodic.spaces import Spaces
 from exactfold.checker.sheets.cell import CellForms
@@ -154,6 +155,27 @@ def test_spaces_of_random_cells(
     assert [s["dimension"] for s in claims["families"]] == families
 
 
+def test_lines_over_a_quadratic_field_beside_a_plane_of_pleats() -> None:
+    """Singular: at b = 1 degree 12, of the radical 10, with primes of degree 2 and 8."""
+    result = count_periodic(random_cell(6, 1242, 64), (3, 4))
+    assert result.status is PROVED
+    assert (result.distinct, result.with_multiplicity) == (10, 12)
+    assert [space.dimension for space in result.pleats] == [2]
+    document = periodic_certificate(result)
+    assert [line["radicand"] for line in document["evidence"]["lines"]] == [1520673] * 2
+    claims = checker.check(document)
+    doubled = [b["multiplicity"] for b in claims["branches"] if b["vertex_signs"][0] == "0"]
+    assert doubled == [2, 2]
+
+
+def test_a_line_in_a_larger_space_is_no_component() -> None:
+    problem = PeriodicProblem.of(read_cell("yoshimura-cell"), (0, 1))
+    (ray,) = rays_on(problem, [(Fraction(1), Fraction(1))], (Fraction(1), Fraction(0)))
+    pair = Fraction(1), Fraction(0)
+    inside = QuadraticLine(2, (pair, (Fraction(0), Fraction(1))), ray)
+    assert not inside.is_component(problem)
+
+
 def test_pleats_do_not_depend_on_the_direction() -> None:
     known = {frozenset(count_periodic("miura-cell", n).pleats) for n in ((3, 4), (1, 0), (0, 1))}
     assert len(known) == 1
@@ -172,9 +194,18 @@ def test_the_pleats_of_a_square_twist_are_over_the_field_of_root_five() -> None:
     assert claims["pleats"] == []
 
 
-def test_rational_solutions_that_are_not_guessed_from_floats_are_in_the_certificate() -> None:
-    result = count_periodic(random_cell(4, 21, 8, flips=21), (1, 0))
+def test_rational_solutions_that_are_not_guessed_from_floats_are_in_the_certificate(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Solved exactly where vertices are flat, and all together."""
+    cell = random_cell(4, 21, 8, flips=21)
+    near = count_periodic(cell, (1, 0))
+    monkeypatch.setattr(counting, "solved_near", lambda *_: iter(()))
+    result = count_periodic(cell, (1, 0))
     assert "Groebner" in result.reason
+    assert "Groebner" not in near.reason
+    assert near.branches == result.branches
+    assert periodic_certificate(near)["claims"] == periodic_certificate(result)["claims"]
     claims = checker.check(periodic_certificate(result))
     assert (claims["distinct"], claims["with_multiplicity"]) == (5, 6)
     assert [line.to_dict() for line in result.pleats] == claims["pleats"]
@@ -222,7 +253,7 @@ def test_what_is_not_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_what_is_open_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(counting, "exact_rays", lambda problem: None)
+    monkeypatch.setattr(counting, "exact_rays", lambda problem, clock: None)
     result = count_periodic("square-twist-cell", (1, 2))
     assert str(result.status) == "undecided"
     assert (len(result.branches), result.distinct, len(result.open)) == (6, None, 2)

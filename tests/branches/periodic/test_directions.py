@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -14,6 +15,7 @@ from exactfold import UNDECIDED, Verdict
 from exactfold._support.clock import Clock
 from exactfold.branches import count_directions, count_periodic
 from exactfold.branches.periodic.crossings import Crossings, OpenVertexError
+from exactfold.branches.periodic.families import Families, OpenFamiliesError
 from exactfold.errors import UsageError
 from exactfold.pattern import PeriodicPattern, random_cell, read_cell
 from exactfold.rigidity.equations.all_directions import AllDirections
@@ -142,11 +144,67 @@ def test_what_is_not_known_is_said(name: str, reason: str) -> None:
     assert result.cycles is None
 
 
+def directions_of_families(cell: PeriodicPattern) -> list[str]:
+    result = count_directions(cell)
+    assert result.status is UNDECIDED
+    assert result.families is not None
+    for n in result.families:
+        assert count_periodic(cell, (n.x[0], n.y[0])).families
+    for direction in ((3, 4), (1, -2), (7, 1)):
+        assert not count_periodic(cell, direction).families
+    return [str(n) for n in result.families]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("yoshimura-cell", ["0,1"]), ("miura-cell", ["0,1"]), ("square-twist-cell", [])],
+)
+def test_families_are_at_single_directions(name: str, expected: list[str]) -> None:
+    """Miura's rigid panels roll up in the same direction."""
+    cell = read_cell(name)
+    assert directions_of_families(cell) == expected
+
+
+@pytest.mark.parametrize(
+    ("vertices", "seed", "flips", "expected"),
+    [(3, 461, 3, ["1,0"]), (5, 891, 5, ["1,12"]), (5, 1150, 0, ["-3,26"])],
+)
+def test_families_of_random_cells(
+    vertices: int, seed: int, flips: int, expected: list[str]
+) -> None:
+    """A plane of pleats; and a pleat with flat vertices, where forms are left to solve."""
+    assert directions_of_families(random_cell(vertices, seed, 64, flips=flips)) == expected
+
+
+def rows_of_loops(number: int) -> PeriodicPattern:
+    """Parallel lines of loop edges: the pleats are all profiles across them."""
+    points = [(Fraction(k % 2, 3), Fraction(k)) for k in range(number)]
+    faces = []
+    for k in range(number):
+        v, j = (k + 1) % number, (k + 1) // number
+        faces.append(((k, 0, 0), (k, 1, 0), (v, 0, j)))
+        faces.append(((k, 1, 0), (v, 1, j), (v, 0, j)))
+    return PeriodicPattern([(1, 0), (0, number)], points, faces)
+
+
+def test_directions_with_families_that_are_not_known() -> None:
+    assert directions_of_families(rows_of_loops(2)) == ["0,1"]
+    result = count_directions(rows_of_loops(4))
+    assert result.families is None
+    assert "pleats form a space of dimension 3" in result.reason
+    cell = read_cell("miura-cell")
+    base = count_periodic(cell, (3, 4))
+    with pytest.raises(OpenFamiliesError, match="time limit of 0 seconds"):
+        Families(AllDirections.of(cell), base, Clock(0)).directions()
+    with pytest.raises(OpenFamiliesError, match="in no quadratic field"):
+        Families(AllDirections.of(cell), replace(base, evidence=None), Clock()).directions()
+
+
 def test_a_time_limit_and_a_tangent_that_may_be_flat_leave_it_open(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     cell = random_cell(3, 0, 64)
-    with pytest.raises(OpenVertexError, match="no answer after"):
+    with pytest.raises(OpenVertexError, match="time limit of 0 seconds"):
         list(Crossings(AllDirections.of(cell), Clock(0)).places(1))
     assert "seconds" in count_directions(cell, limit=0).reason
     monkeypatch.setattr(Crossings, "_flips_modulo", lambda *_: False)

@@ -9,10 +9,12 @@ from typing import Any
 import pytest
 from forge import Document, beyond, given, refused, stopped, verified, with_one_key_more, without
 
+from exactfold.branches.periodic.certificate import periodic_certificate
 from exactfold.branches.periodic.counting import count_periodic
 from exactfold.checker.branches import periodic, periodic_proof
 from exactfold.checker.core.limits import PERIODIC_VERTICES
 from exactfold.pattern.periodic.cell_files import parse_cell
+from exactfold.pattern.periodic.random_cells import random_cell
 
 
 def periodic_file(name: str) -> Document:
@@ -247,28 +249,32 @@ def lines(document: Document) -> list[Document]:
     return found
 
 
-def with_line(name: str, radicand: int, point: list[list[str]]) -> Document:
-    """A certificate of the first version, with one line more."""
-    document = periodic_file(name)
+def with_lines(document: Document, *found: Document) -> Document:
+    """A certificate of the first version, with lines."""
     document["version"] = 2
     document["claims"]["lines"] = []
-    document["evidence"]["lines"] = [{"radicand": radicand, "point": point}]
+    document["evidence"]["lines"] = [*found]
     return document
 
 
 def test_a_line_over_a_square_is_two_points() -> None:
-    """With sqrt 4 = 2 the point and its conjugate are two pleats, one of which is listed, too.
+    """With sqrt 4 = 2 the point and its conjugate are two rational branches.
 
-    Without this line of the checker the signs of the line would be wrong where they are 0, so that
-    others would be open.
+    On the first a fold is flat, on the other it is not, so that it would get a letter.
     """
-    point = [["1", "0"], ["1/2", "1/4"], ["1/2", "-1/4"], ["0", "0"]]
-    document = with_line("pleat", 4, point)
-    refused(document, "a radicand is a square")
+    document = periodic_certificate(count_periodic(random_cell(2, 3, 4, flips=2), (1, 0)))
+    branch = document["claims"]["branches"][1]
+    assert (branch["vertex_signs"], branch["letters"]) == ("++", "MVMFFM")
+    ray = document["evidence"]["rays"].pop(0)
+    assert Fraction(int(ray["center"][0]), 1 << ray["bits"]) == Fraction(3, 32)
+    with_lines(document, {"radicand": 4, "point": [["1", "0"], ["20/3", "2"]]})
+    false(document, "a radicand is a square")
+    assert document["claims"]["branches"][1]["letters"] == "MVMMMM"
 
 
 def test_a_rational_line_is_a_space_again() -> None:
-    document = with_line("pleat", 5, [["1", "0"], ["1", "0"], ["0", "0"], ["0", "0"]])
+    point = [["1", "0"], ["1", "0"], ["0", "0"], ["0", "0"]]
+    document = with_lines(periodic_file("pleat"), {"radicand": 5, "point": point})
     spaces(document).pop(0)  # the same line
     false(document, "a line is rational")
 
@@ -301,11 +307,14 @@ def test_a_line_that_is_no_solution() -> None:
 
 
 def test_a_line_of_a_family_would_be_a_branch_of_its_own() -> None:
-    """Its signs are covered by the family, too, so that the last line of the checker stops it."""
-    document = with_line("family", 2, [["0", "0"], ["1", "0"], ["1", "0"], ["0", "1"]])
-    refused(document, "a line lies in a larger space of solutions")
-    with without("a line lies in a larger space of solutions"):
-        refused(document, "the signs of a line are covered before")
+    """Two lines have the signs of the plane that they span, and would take its place."""
+    document = periodic_certificate(count_periodic("yoshimura-cell", (0, 1)))
+    assert [space["dimension"] for space in document["claims"]["families"]] == [2]
+    spaces(document).clear()
+    found = [{"radicand": 2, "point": [["1", "0"], ["0", c]]} for c in ("1/8", "8")]
+    with_lines(document, *found)
+    false(document, "a line lies in a larger space of solutions")
+    assert document["claims"]["families"] == []
 
 
 def test_a_line_without_which_signs_are_open() -> None:

@@ -1,5 +1,8 @@
 """SVG files that ask for much: nesting, repetition, and text that is slow to search."""
 
+from fractions import Fraction
+from math import pi, sqrt
+
 import pytest
 from drawings import svg
 
@@ -198,3 +201,147 @@ def test_too_many_selectors_with_several_parts(monkeypatch):
     monkeypatch.setattr(svg_tree, "MOST_SELECTORS", 1)
     with pytest.raises(TooLargeError, match="more than 1 selectors with several parts"):
         read_svg(svg(text))
+
+
+# --- transforms and pictures inside pictures -----------------------------------------------------
+
+
+def moved_point(transform, x=2, y=1):
+    """Where the end of a line goes from (x, y), y downwards."""
+    drawing = read_svg(
+        svg(f'<g transform="{transform}"><line x2="{x}" y2="{y}" stroke="red"/></g>')
+    )
+    line = drawing.lines[0]
+    right, up = drawing.points[line[1]]
+    return pytest.approx((float(right), -float(up)), abs=1e-12)
+
+
+ROOT = sqrt(0.5)
+
+
+@pytest.mark.parametrize(
+    ("transform", "place"),
+    [
+        ("none", (2, 1)),
+        ("matrix(1 2, 3-4 .5,6)", (5.5, 6)),
+        ("translate(3px)", (5, 1)),
+        ("translate(1in, -3)", (98, -2)),
+        ("translateX(3)translateY(4)", (5, 5)),
+        ("scale(2)", (4, 2)),
+        ("scale(2, 3)", (4, 3)),
+        ("scaleX(2) scaleY(-1)", (4, -1)),
+        ("rotate(90)", (-1, 2)),
+        ("rotate(.25turn)", (-1, 2)),
+        ("rotate(100grad) rotate(45deg)", (-3 * ROOT, ROOT)),
+        (f"rotate({pi / 2}rad)", (-1, 2)),
+        ("rotate(90, 1 1)", (1, 2)),
+        ("skewX(45)", (3, 1)),
+        ("skewY(45)", (2, 3)),
+        ("skew(45deg, -45deg)", (3, -1)),
+        ("translate(1 2), scale(3)", (7, 5)),
+        ("scale(3) translate(1 2)", (9, 9)),
+    ],
+)
+def test_transforms(transform, place):
+    assert place == moved_point(transform)
+
+
+@pytest.mark.parametrize(
+    ("transform", "message"),
+    [
+        ("rotate", "the transform 'rotate' cannot be read"),
+        ("rotate3d(1, 2, 3)", "the transform 'rotate3d.*' cannot be read"),
+        ("spin(3)", r"the transform 'spin\(3\)' cannot be read"),
+        ("scale(2) and more", "the transform 'scale.*' cannot be read"),
+        ("matrix(1 2 3 4 5)", r"a transform has 'matrix\(1 2 3 4 5\)'"),
+        ("rotate(1 2)", r"a transform has 'rotate\(1 2\)'"),
+        ("scale(a)", r"a transform has 'scale\(a\)'"),
+        ("scale()", r"a transform has 'scale\(\)'"),
+        ("scale(2px)", "a transform has '2px', a unit that is not read"),
+        ("translate(10%)", "a transform has '10%', a unit that is not read"),
+        ("rotate(3px)", "a transform has '3px', a unit that is not read"),
+        ("scale(1e999)", "a transform has numbers that are too large"),
+    ],
+)
+def test_transforms_that_are_not_read(transform, message):
+    """They matter only if the line has a letter."""
+    drawn = f'<g transform="{transform}"><line x2="3" stroke="{{}}"/></g>{LINE}'
+    with pytest.raises(MalformedDrawingError, match=f"line 1: {message}"):
+        read_svg(svg(drawn.format("red")))
+    assert len(read_svg(svg(drawn.format("none"))).lines) == 1
+
+
+def inner(attributes, content='<line x1="1" y1="1" x2="4" y2="3" stroke="red"/>'):
+    """The two ends of a line in a picture inside a picture of 30 times 20, y downwards."""
+    picture = f'<svg viewBox="0 0 30 20"><svg {attributes}>{content}</svg></svg>'
+    drawing = read_svg(picture)
+    (line,) = drawing.lines
+    return [(x, -y) for x, y in (drawing.points[k] for k in line[:2])]
+
+
+@pytest.mark.parametrize(
+    ("attributes", "ends"),
+    [
+        ('x="5" y="7"', [(6, 8), (9, 10)]),
+        ('x="5" width="12" height="4" viewBox="0 0 6 2"', [(7, 2), (13, 6)]),
+        ('width="12" height="4" viewBox="1 1 6 2"', [(0, 0), (6, 4)]),
+        ('viewBox="0 0 15 10"', [(2, 2), (8, 6)]),
+        ('width="50%" height="10" viewBox="0 0 15 20"', [(Fraction(17, 4), 0.5), (5.75, 1.5)]),
+        ('width="9" height="4" viewBox="0 0 3 2" preserveAspectRatio="none"', [(3, 2), (12, 6)]),
+        ('width="9" height="4" viewBox="0 0 3 2"', [(3.5, 2), (9.5, 6)]),
+        ('width="9" height="4" viewBox="0 0 3 2" preserveAspectRatio="xMinYMax"', [(2, 2), (8, 6)]),
+        (
+            'width="9" height="4" viewBox="0 0 3 2" preserveAspectRatio="xMaxYMid"',
+            [(5, 2), (11, 6)],
+        ),
+        (
+            'width="9" height="4" viewBox="0 0 3 2" preserveAspectRatio="xMidYMax slice"',
+            [(3, 1), (12, 7)],
+        ),
+    ],
+)
+def test_a_picture_inside_a_picture(attributes, ends):
+    assert inner(attributes) == ends
+
+
+def test_a_picture_without_a_size():
+    for attributes in ('width="0" viewBox="0 0 1 1"', 'viewBox="0 0 0 1"'):
+        with pytest.raises(MalformedDrawingError, match=r"line 1: a picture inside .* has no size"):
+            inner(attributes)
+
+
+def test_parts_that_are_not_drawn_where_they_stand():
+    """A symbol is drawn by `use` only, and a clip path not even so."""
+    for tag in ("defs", "clipPath", "pattern", "mask", "marker", "symbol"):
+        part = f'<{tag} id="a"><line x2="5" stroke="blue"/></{tag}>'
+        assert [x.letter for x in read_svg(svg(part + LINE)).lines] == ["M"]
+        both = read_svg(svg(part + LINE + '<use href="#a" y="3"/>'))
+        assert [x.letter for x in both.lines] == (["M", "V"] if tag == "symbol" else ["M"])
+
+
+def test_colours_that_are_inherited_and_current():
+    group = '<g color="blue" stroke="{}"><line x2="1"/><line x2="2" color="red" {}/></g>'
+    current = group.format("currentColor", "")
+    assert [x.letter for x in read_svg(svg(current)).lines] == ["V", "V"]
+    own = group.format("currentColor", 'stroke="currentColor"')
+    assert [x.letter for x in read_svg(svg(own)).lines] == ["V", "M"]
+
+
+@pytest.mark.parametrize(
+    ("colour", "letter"),
+    [
+        *(("red", "M"), ("#F00", "M"), ("#ff0000", "M"), ("#f00f", "M"), ("#FF000080", "M")),
+        *(("rgb(255, 0, 0)", "M"), ("RGBA(255,0,0,.5)", "M"), ("rgb(100%, 0%, 0%)", "M")),
+        *(("rgb(255 0 0 / 50%)", "M"), ("hsl(0, 100%, 50%)", "M"), ("hsla(240deg 100% 50%)", "V")),
+        *(("rgb(999, 0, 0)", "M"), ("navy", "V"), ("lime", "C"), ("green", "C"), ("yellow", "F")),
+    ],
+)
+def test_colours(colour, letter):
+    drawing = read_svg(svg(f'<line x2="1" stroke="{colour}"/><line x2="2" stroke="red"/>'))
+    assert [x.letter for x in drawing.lines] == [letter, "M"]
+
+
+@pytest.mark.parametrize("colour", ["rgb(1)", "reddish", "f00", "rgb(a,b,c)", "url(#a)", "#ff"])
+def test_what_is_no_colour(colour):
+    drawing = read_svg(svg(f'<line x2="1" stroke="{colour}"/><line x2="2" stroke="red"/>'))
+    assert [x.letter for x in drawing.lines] == ["M"]

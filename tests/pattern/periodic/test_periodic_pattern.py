@@ -13,6 +13,7 @@ from exactfold.errors import (
     NotPeriodicError,
     OverlapError,
     PatternError,
+    TooLargeError,
 )
 from exactfold.pattern import CELLS, PeriodicPattern, random_cell, read_cell
 from exactfold.pattern.periodic.rigid_parts import without_rigid_parts
@@ -64,10 +65,33 @@ TWICE = [[(0, 0, 0), (0, 2, 0), (0, 2, 1)], [(0, 0, 0), (0, 2, 1), (0, 0, 1)]]
         ([(1, 0)], [(0, 0)], HALVES, MalformedPatternError, "two vectors, not 1"),
         (SQUARE, [], HALVES, MalformedPatternError, "at least one point"),
         (SQUARE, [(0,)], HALVES, MalformedPatternError, "point 0 is"),
-        (SQUARE, [(0, 0)], HALVES[:1], NotPeriodicError, "1 faces for 1 vertices"),
+        (SQUARE, [(0, 0)], HALVES[:1], NotPeriodicError, "of face 0 has no face on its other side"),
+        (SQUARE, [(0, 0)], [], MalformedPatternError, "no faces"),
+        (SQUARE, [(0, 0)], [*HALVES, HALVES[1]], NotPeriodicError, "faces 1 and 2 lie on the same"),
         (SQUARE, [(0, 0)], [HALVES[0], [(0, 0, 0)]], MalformedPatternError, "face 1"),
         (SQUARE, [(0, 0)], [HALVES[0], [(0, 0)] * 3], MalformedPatternError, "face 1: "),
         (SQUARE, [(0, 0)], [HALVES[0], [(1, 0, 0)] * 3], MalformedPatternError, "uses vertex 1"),
+        (
+            SQUARE,
+            [(0, 0)],
+            [HALVES[0], [(10**5000, 0, 0)] * 3],
+            MalformedPatternError,
+            "uses vertex an integer of 16610 bits, but",
+        ),
+        (
+            SQUARE,
+            [(0, 0)],
+            [HALVES[0], [(0, 0, 0), (0, 1, 0), (0, 0, -(10**6) - 1)]],
+            TooLargeError,
+            r"face 1: the corner \(0, 0, -1000001\) is moved by more than 1000000 lattice vectors",
+        ),
+        (
+            SQUARE,
+            [(0, 0)],
+            [[(0, 0, 0), (0, 10**6, 0), (0, 0, 1)], HALVES[1]],
+            NotPeriodicError,
+            r"faces 0 and 1 lie on the same side of the edge 0-0 moved by \(0, -1\)",
+        ),
         (
             SQUARE,
             [(0, 0)],

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal, Inexact, localcontext
 from fractions import Fraction
-from typing import Any, Final
+from typing import Final
 from xml.etree import ElementTree
 
 from exactfold._support.plurals import counted
@@ -17,6 +16,13 @@ from exactfold.errors import MalformedDrawingError, NumberError, TooLargeError
 from exactfold.exact.numbers import parse_rational, shown
 from exactfold.pattern.drawing.drawing import Drawing, Loud, SvgReading
 from exactfold.pattern.drawing.formats.markup import xml_root
+from exactfold.pattern.drawing.formats.svg_groups import (
+    Matrix,
+    Shape,
+    drawn_shapes,
+    length,
+    length_in,
+)
 from exactfold.pattern.drawing.formats.svg_path import NUMBER as NUMERAL
 from exactfold.pattern.drawing.formats.svg_path import (
     PathLines,
@@ -25,26 +31,15 @@ from exactfold.pattern.drawing.formats.svg_path import (
     path_lines,
 )
 from exactfold.pattern.drawing.formats.svg_strokes import Stroke, lettered
-from exactfold.pattern.drawing.formats.svg_tree import MEANING, NAMESPACE, NUMBER, plain_tree
+from exactfold.pattern.drawing.formats.svg_tree import MEANING, NAMESPACE, plain_tree, tag_of
 from exactfold.pattern.drawing.segments import Place, drawing_of
 
-_LENGTH: Final = re.compile(rf"({NUMERAL})\s*([a-z]*)\Z")
-_UNITS: Final = {
-    "": Fraction(1),
-    "px": Fraction(1),
-    "in": Fraction(96),
-    "cm": Fraction(4800, 127),
-    "mm": Fraction(480, 127),
-    "pt": Fraction(4, 3),
-    "pc": Fraction(16),
-}
 _POINTS: Final = re.compile(rf"[\s,]*({NUMERAL})")
 _NAMED: Final = 5
 _DIGITS: Final = 100
 _VIEW: Final = ("width", "height", "viewBox", "x", "y")
 _SHARES: Final = (("x", "x1", "x2", "width"), ("y", "y1", "y2", "height"))
 """Attributes that may be shares of the width of the picture, and of its height."""
-_FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
@@ -75,8 +70,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
     shapes, given, words = _shapes(text)
     omitted.update({"of the kind text": words} if words else {})
     for shape in shapes:
-        values, tag = shape.values, shape.values["attributes"]["tag"]
-        own = given[int(values["attributes"][NUMBER])]
+        values, tag, own = shape.values, shape.tag, given[shape.number]
         seen[tag] += 1
         colour = str(values.get("stroke", "none")).partition("!")[0].strip().lower()
         if values.get("visibility") in ("hidden", "collapse"):
@@ -89,7 +83,7 @@ def read_svg(text: str, reading: SvgReading | None = None) -> Drawing:
         fault: Exception | None = None
         try:
             found = _lines(tag, own, name, reading.chords or 1)
-            move = _mover(shape.transform)
+            move = _mover(shape.matrix, name)
         except (MalformedDrawingError, NumberError, TooLargeError) as error:
             found, fault = PathLines([]), error  # it matters only if the stroke has a letter
         if found is None:
@@ -157,14 +151,12 @@ def _curves(strokes: Sequence[Stroke], chords: int | None) -> list[str]:
     return remarks
 
 
-def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]], int]:
+def _shapes(text: str) -> tuple[Iterator[Shape], list[Mapping[str, str]], int]:
     """The shapes that are drawn, with styles and transforms resolved, in the units of the file.
 
     The second value holds the attributes of all elements as written; a shape has its number in it.
     The third is the number of texts.
     """
-    from svgelements import SVG, Shape  # here: loading it takes longer than reading a pattern
-
     root = xml_root(text)
     if root.tag not in ("svg", f"{{{NAMESPACE}}}svg"):
         raise MalformedDrawingError(
@@ -173,28 +165,28 @@ def _shapes(text: str) -> tuple[Iterator[Any], list[Mapping[str, str]], int]:
     _resolve_percent(root)
     for key in _VIEW:
         root.attrib.pop(key, None)
-    words = sum(element.tag in ("text", f"{{{NAMESPACE}}}text") for element in root.iter())
+    words = sum(tag_of(element) == "text" for element in root.iter())
     root, given = plain_tree(root)
-    try:
-        picture = SVG.parse(io.StringIO(ElementTree.tostring(root, "unicode")), reify=False)
-    except _FAULTS as error:
-        raise MalformedDrawingError(f"the SVG cannot be read: {error}") from None
-    return (element for element in picture.elements() if isinstance(element, Shape)), given, words
+    return drawn_shapes(root), given, words
 
 
 def _resolve_percent(root: ElementTree.Element) -> None:
     """Write lengths in percent in units of the file, where the size of the picture is known.
 
-    Inside a nested picture they are shares of that, and are left as they are.
+    A picture inside has the size of this one if it states none. Lengths in percent inside it are
+    shares of that, and are left as they are.
     """
     box = root.get("viewBox", "").replace(",", " ").split()
     sizes = box[2:] if len(box) == 4 else [root.get("width", ""), root.get("height", "")]
     waiting = list(root)
     while waiting:
         element = waiting.pop()
-        if element.tag in ("svg", f"{{{NAMESPACE}}}svg"):
-            continue
-        waiting += element
+        if tag_of(element) == "svg":
+            for key, size in zip(("width", "height"), sizes, strict=True):
+                if size and key not in element.attrib:
+                    element.set(key, size)
+        else:
+            waiting += element
         for keys, size in zip(_SHARES, sizes, strict=True):
             for key in keys:
                 text = element.get(key, "").strip()
@@ -204,7 +196,7 @@ def _resolve_percent(root: ElementTree.Element) -> None:
 
 def _share(percent: str, size: str) -> str:
     """A share of a length, in its unit; empty text if one of the two is no decimal number."""
-    part, whole = _LENGTH.match(percent), _LENGTH.match(size.strip().lower())
+    part, whole = length_in(percent), length_in(size)
     if part is None or part[2] or whole is None:
         return ""
     with localcontext(prec=_DIGITS) as exact:
@@ -221,7 +213,7 @@ def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLine
         if tag == "path":
             return path_lines(own.get("d", ""), chords)
         if tag == "line":
-            x1, y1, x2, y2 = (_length(own, key) for key in ("x1", "y1", "x2", "y2"))
+            x1, y1, x2, y2 = (length(own, key) for key in ("x1", "y1", "x2", "y2"))
             return PathLines([((x1, y1), (x2, y2))])
         if tag == "rect":
             return _rectangle(own, chords)
@@ -236,7 +228,7 @@ def _lines(tag: str, own: Mapping[str, str], name: str, chords: int) -> PathLine
 
 def _is_zero(width: object) -> bool:
     try:
-        return _length({"width": str(width)}, "width") == 0
+        return length({"width": str(width)}, "width") == 0
     except (MalformedDrawingError, NumberError):
         return False  # a percentage, say
 
@@ -248,8 +240,8 @@ def _sides(places: list[Place]) -> list[tuple[Place, Place]]:
 
 def _rectangle(own: Mapping[str, str], chords: int) -> PathLines:
     """The sides of a rectangle; each rounded corner becomes `chords` chords."""
-    x, y, width, height = (_length(own, key) for key in ("x", "y", "width", "height"))
-    stated = [_length(own, key) for key in ("rx", "ry") if own.get(key, "auto") != "auto"]
+    x, y, width, height = (length(own, key) for key in ("x", "y", "width", "height"))
+    stated = [length(own, key) for key in ("rx", "ry") if own.get(key, "auto") != "auto"]
     radii = stated or [Fraction(0)]
     rx, ry = min(radii[0], width / 2), min(radii[-1], height / 2)
     if not rx * ry:
@@ -278,21 +270,15 @@ def _points(text: str) -> list[Place]:
     return list(zip(numbers[::2], numbers[1::2], strict=True))
 
 
-def _length(own: Mapping[str, str], key: str) -> Fraction:
-    text = own.get(key, "0")
-    match = _LENGTH.match(text.strip().lower())
-    if match is None or match[2] not in _UNITS:
-        raise MalformedDrawingError(f"{key} is {shown(text)}, not a length")
-    return parse_rational(match[1]) * _UNITS[match[2]]
-
-
-def _mover(matrix: Any) -> Callable[[Place], Place]:
+def _mover(matrix: Matrix | MalformedDrawingError, name: str) -> Callable[[Place], Place]:
     """A function that applies the transform and turns the y axis upwards."""
+    if isinstance(matrix, MalformedDrawingError):
+        raise MalformedDrawingError(f"{name}: {matrix}")
     try:
-        a, b, c, d, e, f = (Fraction(repr(float(getattr(matrix, key)))) for key in "abcdef")
-    except _FAULTS:
+        a, b, c, d, e, f = (Fraction(repr(number)) for number in matrix)
+    except ValueError:  # infinity, or no number
         raise MalformedDrawingError(
-            "a transform has numbers that are too large: apply it to the coordinates"
+            f"{name}: a transform has numbers that are too large: apply it to the coordinates"
         ) from None
 
     def move(place: Place) -> Place:

@@ -35,7 +35,8 @@ _SOLID: Final = "solid"
 _KINDS: Final = (_SOLID, "dashed", "dash-dotted", "dotted")
 _PALE: Final = 0.8
 """Lines of this lightness or more are taken for a grid in the background, not for creases."""
-_FAULTS: Final = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+_WITH_COMMAS: Final = re.compile(r"(rgb|hsl)a?\(([^()]*)\)\Z", re.IGNORECASE)
+"""Colours are written with commas or, since CSS 4, without them."""
 
 
 @dataclass(frozen=True)
@@ -221,17 +222,18 @@ def _one_colour(strokes: Sequence[Stroke], guessed: bool) -> list[str]:
 
 @lru_cache(1024)
 def _rgb(text: str) -> RGB | None:
-    """The components of a colour; None for a text that is no colour."""
-    from svgelements import Color  # here: loading it takes longer than reading a pattern
+    """The components of a colour; None for a text that is no colour. Opacity is passed over."""
+    from PIL.ImageColor import getrgb  # here: loading it takes longer than reading a pattern
 
+    function = _WITH_COMMAS.match(text.strip())
+    if function:
+        words = function[2].replace(",", " ").partition("/")[0].split()
+        text = f"{function[1]}({','.join(words[:3])})".lower().replace("deg", "")
     try:
-        colour = Color(text)
-        rgb = (int(colour.red), int(colour.green), int(colour.blue))
-    except _FAULTS:
+        red, green, blue = getrgb(text)[:3]
+    except ValueError:
         return None
-    if rgb == (0, 0, 0) and text != "black" and not re.match(r"#|rgb|hsl", text):
-        return None  # the library returns black for unknown colours
-    return rgb
+    return min(red, 255), min(green, 255), min(blue, 255)
 
 
 @lru_cache(1024)

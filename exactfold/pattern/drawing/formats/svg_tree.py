@@ -1,7 +1,6 @@
 """Reduces an SVG file to the few elements and attributes of a drawing, within limits.
 
-Styles become attributes. The library that resolves groups, transforms and `use` takes long, or
-never ends, on text that nobody would draw. So it gets only the reduced tree.
+Styles become attributes. `svg_groups` resolves groups, transforms and `use` of the reduced tree.
 """
 
 from __future__ import annotations
@@ -26,21 +25,22 @@ NAMESPACE: Final = "http://www.w3.org/2000/svg"
 NUMBER: Final = "exactfold"
 """The attribute that holds the number of an element."""
 _DROPPED: Final = ("style", "text", "tspan", "title", "desc", "image", "metadata", "script")
-_LINK: Final = "{http://www.w3.org/1999/xlink}href"
-_STYLED: Final = (
+LINK: Final = "{http://www.w3.org/1999/xlink}href"
+MEANING: Final = "exactfold-meaning"
+"""The attribute that holds the letter which the name of an element or its group stands for."""
+INHERITED: Final = (
     "stroke",
     "stroke-dasharray",
     "stroke-width",
     "color",
-    "display",
     "visibility",
     "opacity",
     "stroke-opacity",
-    "transform",
+    MEANING,
 )
+"""What holds for an element holds for everything inside it."""
+_STYLED: Final = (*INHERITED[:-1], "display", "transform")
 _KEPT: Final = ("id", *_STYLED)
-MEANING: Final = "exactfold-meaning"
-"""The attribute that holds the letter which the name of an element or its group stands for."""
 _NAME: Final = re.compile(
     r"(mountain|valley|boundar(?=y|ies)|border|outline|cut|unassigned)"
     r"(y|ies|s)?([-_ ]?(fold|crease|line)s?)?([-_ ]?[0-9]*_?)\Z"
@@ -57,12 +57,12 @@ _Simple: TypeAlias = frozenset[str]
 _PLACED: Final = ("x", "y", "width", "height")
 _OF_TAG: Final = {
     "svg": (*_PLACED, "viewBox", "preserveAspectRatio"),
-    "use": (*_PLACED, "href", _LINK),
-    "rect": _PLACED,
-    "circle": ("cx", "cy", "r"),
-    "ellipse": ("cx", "cy", "rx", "ry"),
+    "use": (*_PLACED, "href", LINK),
+    "rect": ("width", "height"),
+    "circle": ("r",),
+    "ellipse": ("rx", "ry"),
 }
-"""Other attributes that the library needs, by element; it must not read the lines of a shape."""
+"""Other attributes that `svg_groups` needs, by element."""
 _MOVE: Final = 32
 """So many characters, at most, are added around the numbers by which `use` moves."""
 
@@ -86,7 +86,7 @@ def plain_tree(root: Element) -> tuple[Element, list[Mapping[str, str]]]:
     Raises `TooLargeError` if nesting, repetition by `use` or text exceeds the limits, and
     `MalformedDrawingError` for a `use` that refers to itself.
     """
-    styles = _Styles("".join(e.text or "" for e in root.iter() if _tag(e) == "style"))
+    styles = _Styles("".join(e.text or "" for e in root.iter() if tag_of(e) == "style"))
     given: list[Mapping[str, str]] = []
     plain = _alone(root, styles, (), given)
     waiting: list[tuple[Element, Element, tuple[Element, ...]]] = [(root, plain, (root,))]
@@ -94,14 +94,15 @@ def plain_tree(root: Element) -> tuple[Element, list[Mapping[str, str]]]:
         element, copy, above = waiting.pop()
         if len(above) > MOST_DEPTH:
             _too_deep()
-        inside = [child for child in element if _tag(child) not in _DROPPED]
+        inside = [child for child in element if tag_of(child) not in _DROPPED]
         copy.extend([_alone(child, styles, above, given) for child in inside])
         waiting += [(a, b, (*above, a)) for a, b in zip(inside, copy, strict=True)]
     _check_cost(plain)
     return plain, given
 
 
-def _tag(element: Element) -> str:
+def tag_of(element: Element) -> str:
+    """The tag of an element, without the namespace of SVG."""
     return element.tag.removeprefix(f"{{{NAMESPACE}}}")
 
 
@@ -112,7 +113,7 @@ def _alone(
 
     `above` are the elements round it, the outermost first.
     """
-    tag, own = _tag(element), dict(element.attrib)
+    tag, own = tag_of(element), dict(element.attrib)
     own |= styles.of(element, above)
     own |= _declarations(own.get("style", ""))
     kept = {key: own[key] for key in (*_KEPT, *_OF_TAG.get(tag, ())) if key in own}
@@ -122,10 +123,6 @@ def _alone(
                 f"an attribute ({key.rpartition('}')[2]}) of an SVG element {shown(tag)} has "
                 f"{len(text)} characters, but at most {MOST_TEXT} are read: shorten it"
             )
-    if tag in ("polyline", "polygon") and own.get("points", "").strip():
-        kept["points"] = "0 0 1 0"  # the library leaves out elements without points
-    elif tag == "path":
-        kept["d"] = ""
     names = [*own.get("class", "").split(), own.get("id", ""), own.get(_LABEL, "")]
     matches = [match for name in names if (match := _NAME.match(name.strip().lower()))]
     if matches:
@@ -173,11 +170,11 @@ class _Styles:
         """The declarations that hold for an element inside the elements `above`."""
         declared: dict[str, str] = {}
         own = _marks(element)
-        for key in ("*", _tag(element), f"#{element.get('id')}"):
+        for key in ("*", tag_of(element), f"#{element.get('id')}"):
             declared |= self._single.get(key, {})
         for name in element.get("class", "").split(" "):
             declared |= self._single.get(f".{name}", {})
-            declared |= self._single.get(f"{_tag(element)}.{name}", {})
+            declared |= self._single.get(f"{tag_of(element)}.{name}", {})
         for k in sorted(k for mark in ("", *own) for k in self._by_mark.get(mark, ())):
             (*outer, last), found = self._compound[k]
             if last <= own and _are_round(outer, above):
@@ -197,7 +194,7 @@ def _simple(text: str) -> _Simple | None:
 def _marks(element: Element) -> _Simple:
     """The tag, id and classes of an element, as in a selector."""
     classes = {f".{name}" for name in element.get("class", "").split()}
-    return frozenset({_tag(element), f"#{element.get('id')}"} | classes)
+    return frozenset({tag_of(element), f"#{element.get('id')}"} | classes)
 
 
 def _are_round(parts: Sequence[_Simple], above: Sequence[Element]) -> bool:
@@ -224,7 +221,7 @@ def _check_cost(root: Element) -> None:
     while waiting:
         element = waiting[-1]
         inside = list(element)
-        link = element.get("href", element.get(_LINK, "")) if _tag(element) == "use" else ""
+        link = element.get("href", element.get(LINK, "")) if tag_of(element) == "use" else ""
         if link and link[1:] in named:
             inside.append(named[link[1:]])
         if element not in costs:
@@ -259,7 +256,7 @@ def _check_cost(root: Element) -> None:
 
 def _cost(element: Element, inside: list[_Cost]) -> _Cost:
     own = len(element.get("transform", ""))
-    if _tag(element) == "use":
+    if tag_of(element) == "use":
         own += len(element.get("x", "")) + len(element.get("y", "")) + _MOVE
     elements = 1 + sum(cost.elements for cost in inside)
     return _Cost(
