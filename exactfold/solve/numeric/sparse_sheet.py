@@ -53,8 +53,7 @@ class FloatSheet:
     def of(cls, sheet: VertexEquations) -> FloatSheet:
         """The exact data as floats; each float is rounded from exact integers."""
         folds, size = sheet.folds, sheet.size
-        areas = folds.left * folds.right
-        weights = ratio(folds.weights * size**2, areas[:, None])
+        weights = ratio(folds.weights * size**2, folds.areas[:, None])
         squares = (folds.squared_length / size**2).astype(np.float64)
         count = len(sheet.pattern.vertices)
         unknowns = np.array(sheet.unknowns, dtype=np.intp)
