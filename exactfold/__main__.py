@@ -12,7 +12,7 @@ except KeyboardInterrupt:
     os._exit(130)
 
 
-_BETWEEN = 50_000
+_BETWEEN = 400_000
 """New objects between two searches for garbage: with 700 they are a tenth of a short command."""
 
 

@@ -38,13 +38,13 @@ _GRID: Final = 1 << 20
 
 
 def prove(change: str | None = None) -> Proof:
-    """Machine steps of Theorems 19 and 20 of docs/tessellations.md."""
+    """Machine steps of Theorems 19 to 21 of docs/tessellations.md."""
     script = Script(
         NAME,
         TITLE,
         (
-            "a straight-line triangulation of the plane that repeats under a lattice, without "
-            "pleats; loops and repeated edges in the cell are allowed",
+            "a straight-line triangulation of the plane that repeats under a lattice; loops and "
+            "repeated edges in the cell are allowed; without pleats except in Theorem 21",
         ),
         change,
     )
@@ -67,12 +67,22 @@ def prove(change: str | None = None) -> Proof:
         note="the Jacobian of the periodic heights; constants are its kernel",
         words=f"{place} 20",
     )
+    script.state(
+        "T.22",
+        f"{place} 21",
+        r"\text{a pleat without flat vertices is in families of one direction at most}",
+        note="a linear space of solutions for all directions together",
+        code="count_directions",
+        words=f"{place} 21",
+    )
     _ramification(script)
     _flat_stars(script)
     _waterbomb(script)
     _continued(script)
     _symmetry(script)
     _inertia(script)
+    _singular(script)
+    _families(script)
     return script.proof()
 
 
@@ -261,6 +271,43 @@ def _signature(problem: PeriodicProblem, z: list[Fraction]) -> tuple[int, int]:
     ]
     positive, negative, *_ = inertia_by_elimination(symmetric)
     return positive, negative
+
+
+# --- families -------------------------------------------------------------------------------------
+
+
+def _singular(script: Script) -> None:
+    """B = n n^T and C, with det (B + t C) = 0 for all t: then C n' = 0 for n' at right angles."""
+    _, x, y, a, b, c = field("x y a b c", QQ)
+    polar = x * x * c - 2 * x * y * b + y * y * a  # the coefficient of t
+    square = a * c - b * b
+    part = script.alter("the first entry of C n'", 0, 1)
+    first, second = a * y - b * x + part, b * y - c * x
+    script.identity(
+        "if det (n n^T + t C) = 0 for all t, then C n' = 0 for the n' at right angles to n, so "
+        "that C is a multiple of n n^T",
+        first * first - a * polar + square * x * x,
+        second * second - c * polar + square * y * y,
+        of="T.22",
+    )
+
+
+def _families(script: Script) -> None:
+    """Cells with pleats: the directions that are found, beside counts for single directions."""
+    extra = script.alter("no other direction", False, True)
+    cells = [read_cell("miura-cell"), read_cell("yoshimura-cell")]
+    cells += [random_cell(v, seed, 64, flips=f) for v, seed, f in ((3, 461, 3), (5, 1150, 0))]
+    script.cases(
+        "families of cells with pleats are at the directions found from the pleats, and at none "
+        "of five others",
+        (
+            bool(count_periodic(cell, n).families) == (n in found or extra)
+            for cell in cells
+            for found in [[(k.x[0], k.y[0]) for k in count_directions(cell).families or ()]]
+            for n in {*found, (3, 4), (-1, 3), (5, 2), (1, 1), (7, -1)}
+        ),
+        of="T.22",
+    )
 
 
 if __name__ == "__main__":

@@ -43,6 +43,7 @@ from .letters.panels_listed import PANEL_ASSIGNMENTS
 from .motion.certificate import MOTION
 from .motion.loops import LOOPS
 from .motion.panels.certificate import PANEL_MOTION
+from .panels.cell import PANEL_CELL
 from .panels.certificate import PANELS
 from .panels.torques import PANEL_TORQUES
 from .sheets.meant import MEANT
@@ -56,6 +57,7 @@ DOCUMENTS: tuple[DocumentKind[Any], ...] = (
     PIECES,
     PERIODIC,
     PANELS,
+    PANEL_CELL,
     LETTERS,
     ASSIGNMENTS,
     PANEL_LETTERS,

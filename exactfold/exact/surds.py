@@ -9,12 +9,14 @@ from math import inf, nextafter
 from sys import float_info
 from typing import Final, TypeAlias
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz
 
 from exactfold.errors import UsageError
 from exactfold.exact.linalg import from_fmpq
 from exactfold.exact.root_tower import ZERO, Coefficients, Parts, RootTower, sum_of, to_fmpq
 
+_FACTORED: Final = 1 << 64
+"""Numbers above it are not factored."""
 _GUARDED: Final = 60
 """A sign is first looked for in a ball of so many bits, and only then decided exactly."""
 
@@ -196,8 +198,14 @@ class SurdField(RootTower):
         >>> field = RATIONALS.adjoined(2)
         >>> RATIONALS.name, field.name, field.adjoined(2 + field.root).name
         ('Q', 'Q(sqrt 2)', 'Q(sqrt 2, sqrt (2 + r1))')
+        >>> RATIONALS.adjoined(Fraction(1, 5)).name
+        'Q(sqrt 5)'
         """
         numbers = [str(number) for number in self.numbers]
+        if len(numbers) == 1:
+            p, q = Fraction(numbers[0]).as_integer_ratio()
+            if q > 1 and p * q < _FACTORED:  # no later root is given in terms of this one
+                numbers = [str(split_square(p * q)[0])]
         roots = [f"sqrt {n}" if n.isdigit() else f"sqrt ({n})" for n in numbers]
         return f"Q({', '.join(roots)})" if roots else "Q"
 
@@ -244,6 +252,19 @@ class SurdField(RootTower):
 
     def __reduce__(self) -> tuple[object, ...]:
         return SurdField, (self.radicands,)  # without the cached enclosures
+
+
+def split_square(number: int) -> tuple[int, int]:
+    """A positive number as d s^2 with the largest s.
+
+    >>> split_square(180)
+    (5, 6)
+    """
+    free, square = 1, 1
+    for prime, power in fmpz(number).factor():
+        free *= int(prime) ** (power % 2)
+        square *= int(prime) ** (power // 2)
+    return free, square
 
 
 RATIONALS: Final = SurdField(())

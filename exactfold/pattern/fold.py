@@ -246,16 +246,21 @@ def _letters(document: Mapping[str, Any], count: int) -> list[str]:
 def _assignment(
     pattern: CreasePattern, edges: Sequence[Edge], letters: Sequence[str]
 ) -> Mapping[Edge, str]:
-    known, folds = set(pattern.edges), set(pattern.folds)
-    assignment: dict[Edge, str] = {}
-    for k, (i, j) in enumerate(edges):
-        edge = (min(i, j), max(i, j))
+    sides = [(i, j) if i < j else (j, i) for i, j in edges]
+    known, rim = set(pattern.edges), set(pattern.boundary_edges)
+    assignment = dict(zip(sides, letters, strict=True)) if letters else {}
+    cuts = [edge for edge, letter in assignment.items() if letter in "BC"]
+    if known.issuperset(sides) and len(assignment) in (0, len(sides)) and rim.issuperset(cuts):
+        return assignment
+    assignment = {}
+    for k, edge in enumerate(sides):
+        i, j = edges[k]
         if edge not in known:
             raise FoldError(f"edge {k} ({i}-{j}) is not a side of any face")
         if not letters:
             continue
         letter = letters[k]
-        if letter in "BC" and edge in folds:
+        if letter in "BC" and edge not in rim:
             kind = "a cut" if letter == "C" else "a boundary"
             raise FoldError(
                 f"edge {k} ({i}-{j}) lies between two faces but is assigned {letter}, {kind}"

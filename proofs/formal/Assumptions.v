@@ -1,6 +1,7 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
-  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Example BranchExample.
+  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Triangles Emptied Exact Flex
+  Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.
@@ -15,6 +16,12 @@ Print Assumptions all_verified.
 Print Assumptions one_verified.
 Print Assumptions all_notched_verified.
 Print Assumptions one_notched_verified.
+Print Assumptions emptied_verified.
+Print Assumptions all_emptied_verified.
+Print Assumptions all_notched_emptied_verified.
+Print Assumptions exact_verified.
+Print Assumptions exact_notched_verified.
+Print Assumptions disk_moves.
 
 (** The others together. *)
 Definition others :=
@@ -24,5 +31,6 @@ Definition others :=
    every_solution_on_a_branch, branch_has_one_representative, at_most_2_to_the_n,
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
    boxed, no_star_is_flat, near_branch, near_solution, passed,
-   open_solution_on_a_branch, branch_has_one_raised, notched, swift_checked, the_branch).
+   open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
+   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch).
 Print Assumptions others.

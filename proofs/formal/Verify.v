@@ -2,7 +2,7 @@
     given, and what it prepares from them, are not trusted. *)
 From Coq Require Import Reals ZArith List Lra Lia Permutation Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Star KeyLemma Flat Complex Theorems Branches
-  Notch Drawing Tables Rational Certificate Integers.
+  Triangles Notch Drawing Tables Rational Certificate Integers.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -182,14 +182,6 @@ End All.
     The drawing is that of the sheet whose notch is closed: its first triangle has the corners [r], and two on
     the rim; the other triangles are those of the sheet with the notch. *)
 
-(** The curvature that the faces of a list give to a vertex, of complex heights. *)
-Definition faces_curvature (at_ : nat -> point) (fs : list face) (v : nat) (z : cvec) : complex :=
-  csum (link fs v) (fun s => let '(a, b) := s in
-    cwedge (spoke at_ v a) (spoke at_ v b) (csub (z a) (z v)) (csub (z b) (z v))).
-
-Lemma faces_curvature_fan S v z : In v (inner S ++ rim S) -> faces_curvature (at_ S) (faces S) v z = KC S v z.
-Proof. intros Hv. unfold faces_curvature, KC, csum. f_equal; apply sum_perm, Permutation_sym, fans; assumption. Qed.
-
 Lemma link_other a b c fs v : v <> a -> v <> b -> v <> c -> link ((a, b, c) :: fs) v = link fs v.
 Proof.
   intros Na Nb Nc. unfold link. cbn [corners flat_map app filter].
@@ -354,8 +346,8 @@ Proof.
     - specialize (Sg v Hv). apply others_in in Hv. rewrite K2_sym, (flat_null S v h) in Sg by tauto. lra. }
   pose proof Op as (_ & _ & b1 & b2 & b3 & _ & _ & _ & _ & Rim & Cor).
   destruct (notched S b1 b2 b3 r Rim Cor Hr NF) as (l & Len & D & Rep & Sim & Signs & Complete).
-  exists l. split; [exact Len|]. split; [exact D|]. split; [exact Rep|]. split; [exact Sim|]. split; [exact Signs|].
-  split.
+  exists l. split; [exact Len|]. split; [exact D|]. split; [exact Rep|].
+  split; [exact Sim|]. split; [exact Signs|]. split.
   - intros z Hz. apply Complete. intros v Hv.
     rewrite <- (Hz v Hv). symmetry. exact (opened_curvature ok opened v z Op Hv).
   - intros e h f i j l' m valley He Rh Sg Hf En As. destruct (Near h Rh e He) as (_ & Lt).

@@ -45,6 +45,12 @@ ASSUMED = {
     "one_verified": CLASSICAL,
     "all_notched_verified": CLASSICAL,
     "one_notched_verified": CLASSICAL,
+    "emptied_verified": REALS,
+    "all_emptied_verified": CLASSICAL,
+    "all_notched_emptied_verified": CLASSICAL,
+    "exact_verified": CLASSICAL,
+    "exact_notched_verified": CLASSICAL,
+    "disk_moves": REALS,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, UNDECIDED
@@ -175,33 +176,38 @@ class Asked(CountOptions):
         with Bar("reading") as bar:
             cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             result = count_periodic(cell, self.direction, limit=self.limit, progress=bar)
-        written = None
-        if self.certificate is not None:
-            try:
-                write_certificate(periodic_certificate(result), self.certificate)
-                written = str(self.certificate)
-            except NotApplicableError as error:
-                say(f"no certificate was written: {error}")
+        written = self._written(lambda: periodic_certificate(result))
         if self.as_json:
             print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:
             report.show(report.periodic_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
+    def _written(self, certificate: Callable[[], dict[str, Any]]) -> str | None:
+        """Write the certificate if it was asked for, and there is one; returns its name."""
+        if self.certificate is None:
+            return None
+        try:
+            write_certificate(certificate(), self.certificate)
+        except NotApplicableError as error:
+            say(f"no certificate was written: {error}")
+            return None
+        return str(self.certificate)
+
     def _panel_cell(self) -> int:
         """Count the motions of a tessellation of rigid panels."""
+        from exactfold.panels.periodic.certificate import panel_cell_certificate
         from exactfold.panels.periodic.modes import count_panel_cell
 
-        if self.certificate is not None:
-            raise UsageError("motions of a tessellation of rigid panels have no certificate")
         with Bar("reading") as bar:
             cell = asked_cell(self.pattern, self.reading, self.cell, verbose=self.verbose)
             bar("solving")
             result = count_panel_cell(cell, limit=self.limit)
+        written = self._written(lambda: panel_cell_certificate(result))
         if self.as_json:
-            print(json.dumps(result.to_dict(name_of(self.pattern))))
+            print(json.dumps(result.to_dict(written, name_of(self.pattern))))
         else:
-            report.show(report.panel_cell_report(result, everything=self.everything))
+            report.show(report.panel_cell_report(result, written, everything=self.everything))
         return EXIT[result.status]
 
     def _all_directions(self) -> int:

@@ -198,9 +198,10 @@ def _crossings_table(result: DirectionsCount, limit: int) -> Table:
     return table
 
 
-def panel_cell_report(result: PanelCell, *, everything: bool) -> Group:
+def panel_cell_report(result: PanelCell, certificate: str | None, *, everything: bool) -> Group:
     """The answer and the motions of a tessellation of rigid panels."""
     took = f" ({result.seconds:.2f} s)"
+    written = [] if certificate is None else [f"certificate: {certificate}"]
     if result.status is not PROVED:
         answer = Text.assemble(
             "the periodic motions of the panels are ",
@@ -211,7 +212,7 @@ def panel_cell_report(result: PanelCell, *, everything: bool) -> Group:
         return Group(answer)
     if not result.motions:
         answer = Text.assemble("no periodic motion of the panels - ", status_text(PROVED), took)
-        return Group(answer)
+        return Group(answer, *map(Text, written))
     answer = Text.assemble(
         f"{counted(len(result.motions), 'component')} of periodic motions of rigid panels - ",
         status_text(PROVED),
@@ -235,7 +236,7 @@ def panel_cell_report(result: PanelCell, *, everything: bool) -> Group:
     if fields:
         notes.append(f"Fold angles are in {', '.join(fields)}.")
     more = more_text(len(result.motions) - limit)
-    return Group(answer, "", table, *more, "", *map(Text, notes))
+    return Group(answer, *map(Text, written), "", table, *more, "", *map(Text, notes))
 
 
 def _rolls(motion: PeriodicMotion) -> str:

@@ -134,7 +134,8 @@ def _covered(
     for signs, ray in left:
         if clock.passed:
             break
-        if any(agree(found.signs, signs) for found in (*covers, *lines)):
+        known = [*(cover.signs for cover in covers), *(line.signs for line in lines)]
+        if any(agree(other, signs) for other in known):
             continue
         for found in solved_near(spaces, ray, solved):
             if agree(found.signs, signs):
@@ -161,12 +162,13 @@ def _result(
     exact = [line.ray for line in found]
     branches += [shown.branch(ray.signs, ray.b, ray.letters) for ray in exact if ray.b]
     wide = [space for space in spaces if space.dimension > 1 and space.bends]
+    known = [*(cover.signs for cover in covers), *(line.signs for line in found)]
     left = [
         shown.signs(signs)
         for row in range(len(rays.signs))
         if row not in proved
         for signs in [rays.signs[row].astype(int).tolist()]
-        if not any(agree(cover.signs, signs) for cover in (*covers, *found))
+        if not any(agree(other, signs) for other in known)
     ]
     number = len(rays.signs)
     total = f"{number} {agreeing(number, 'pair')} of opposite sign vectors"

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import Final
 
 import numpy as np
-from flint import fmpz
 
 from exactfold._support.arrays import FloatArray
 from exactfold.branches.periodic.exactly import ExactRay, rays_on
@@ -22,6 +21,7 @@ from exactfold.branches.periodic.spaces import (
     summed,
 )
 from exactfold.exact.linalg import nullspace
+from exactfold.exact.surds import split_square
 from exactfold.rigidity.equations.periodic import PeriodicProblem, Row
 
 Pair = tuple[Fraction, Fraction]
@@ -154,19 +154,6 @@ def agree(signs: Sequence[int], given: Sequence[float]) -> bool:
     """Whether a sign vector, or its opposite, agrees with signs where these are not 0."""
     pairs = [(s, e) for s, e in zip(signs, given, strict=True) if s]
     return all(s == e for s, e in pairs) or all(s == -e for s, e in pairs)
-
-
-def split_square(number: int) -> tuple[int, int]:
-    """A positive number as d s^2 with the largest s.
-
-    >>> split_square(180)
-    (5, 6)
-    """
-    free, square = 1, 1
-    for prime, power in fmpz(number).factor():
-        free *= int(prime) ** (power % 2)
-        square *= int(prime) ** (power // 2)
-    return free, square
 
 
 def _at(entry: Sequence[Fraction], root: Pair, radicand: int) -> Pair:

@@ -170,13 +170,13 @@ def _folds(
     if cones:
         return False
     if not plain:
-        return len(part) == 1 and _close_always(inner, part[0])
+        return len(part) == 1 and close_always(inner, part[0])
     if len(part) != 1 or any(len(around) > 4 for around in near.values()):
         return False
     return _closes(spaces.sheet, near, part[0])
 
 
-def _close_always(spaces: Spaces, motion: Motion) -> bool:
+def close_always(spaces: Spaces, motion: Motion) -> bool:
     """Whether all vertices and holes close for every T if tau = T w (docs/panels.md, 7).
 
     The turn about the line (x, y, m) is the dual quaternion 1 + tau (x i + y j + m eps k), and the

@@ -6,14 +6,13 @@ import time
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from math import gcd, lcm
 
 from exactfold._support.clock import QUICK, Clock
 from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
-from exactfold.errors import TooManyModesError, UsageError
+from exactfold.errors import TooManyModesError
 from exactfold.exact.joined_fields import joined
-from exactfold.exact.surds import Number, exact, rational, sign, simple
+from exactfold.exact.surds import Number, Surd, exact, sign, simple
 from exactfold.panels.by_spaces import MOST_REDUCTION, MOST_STEPS, checked_components
 from exactfold.panels.periodic.result import PanelCell, PeriodicMotion, PeriodicPart
 from exactfold.panels.periodic.torus import Torus
@@ -46,7 +45,7 @@ def count_panel_cell(cell: object, *, limit: float | None = None) -> PanelCell:
     >>> [(m.dimension, m.direction, str(m.folds)) for m in miura]
     [(2, (0, 1), 'proved'), (1, None, 'proved')]
     >>> count_panel_cell("square-twist-cell").field_names
-    ('Q(sqrt (1/5))',)
+    ('Q(sqrt 5)',)
     """
     start, clock = time.perf_counter(), Clock(limit)
     pattern = as_cell(cell)
@@ -132,13 +131,7 @@ def _rolling(bends: list[tuple[Number, ...]]) -> tuple[bool, tuple[Number, Numbe
 
 def _shortest(x: Number, y: Number) -> tuple[Number, Number]:
     """A rational direction as the shortest vector of integers that points up."""
-    if sign(y) < 0 or (not sign(y) and sign(x) < 0):
-        x, y = -x, -y
-    try:
-        p, q = rational(x), rational(y)
-    except UsageError:
-        return simple(exact(x) / exact(y)), Fraction(1)
-    common = lcm(p.denominator, q.denominator)
-    whole = int(p * common), int(q * common)
-    scale = gcd(*whole)
-    return whole[0] // scale, whole[1] // scale
+    if not sign(y):
+        return 1, 0
+    slope = simple(exact(x) / exact(y))
+    return (slope, Fraction(1)) if isinstance(slope, Surd) else Fraction(slope).as_integer_ratio()

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, TypedDict
+from typing import Annotated, ClassVar, Literal, TypedDict
 
 from exactfold._support.documents import Keywords, NotNegative, Pair, Positive, VerdictText
 from exactfold._support.plurals import counted
-from exactfold._support.results import Ways
+from exactfold._support.results import Certified, Ways
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import UsageError
 from exactfold.exact.surds import Number, common_field
@@ -147,6 +147,8 @@ class PanelCellDocument(TypedDict):
     """The folds [u, v, i, j] in the order of the letters."""
     motions: list[PeriodicMotionDocument]
     """The components, the largest dimension first."""
+    certificate: str | None
+    """The certificate that was written."""
     seconds: NotNegative
     """The time that it took."""
 
@@ -171,12 +173,14 @@ class PeriodicMatchDocument(TypedDict):
 
 
 @dataclass(frozen=True, repr=False)
-class PanelCell(Ways[PeriodicMotion]):
+class PanelCell(Ways[PeriodicMotion], Certified):
     """All motions of a tessellation of rigid panels to second order, with equal cells.
 
     `folds` are the edges that fold, in the order of the letters. With the status PROVED, `motions`
     are all irreducible components of the motions, for all directions n together.
     """
+
+    WRITER: ClassVar[str] = "exactfold.panels.periodic.certificate:panel_cell_certificate"
 
     pattern: PeriodicPattern
     folds: tuple[Side, ...]
@@ -217,7 +221,7 @@ class PanelCell(Ways[PeriodicMotion]):
         found = counted(len(self.motions), "component")
         return f"<PanelCell: {self.status}, {found}, {self.pattern!r}>"
 
-    def to_dict(self, name: str | None = None) -> PanelCellDocument:
+    def to_dict(self, certificate: str | None = None, name: str | None = None) -> PanelCellDocument:
         """The object printed by `exactfold count CELL --json`."""
         return {
             "format": "exactfold panel-cell result",
@@ -228,6 +232,7 @@ class PanelCell(Ways[PeriodicMotion]):
             "vertices": self.pattern.V,
             "folds": [list(fold) for fold in self.folds],
             "motions": [motion.to_dict() for motion in self.motions],
+            "certificate": certificate,
             "seconds": round(self.seconds, 3),
         }
 

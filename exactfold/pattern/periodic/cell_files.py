@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from exactfold.errors import InputError, NotFoldError, UsageError
+from exactfold.errors import InputError, NotFoldError, NumberError, UsageError
 from exactfold.exact.numbers import as_rational, format_rational, shown
 from exactfold.pattern.data import CELLS, cell_path
 from exactfold.pattern.drawing.bounds import check_common_denominator, check_coordinates, read_bytes
@@ -103,21 +103,30 @@ def _of_fold(document: Mapping[str, Any]) -> PeriodicPattern:
 def _limited(
     lattice: Any, points: list[Any], faces: Any, diagonals: Sequence[Any] = ()
 ) -> PeriodicPattern:
-    pattern = PeriodicPattern(_rational(lattice), _rational(points), faces, diagonals)
+    vectors, spots = _rational(lattice, "lattice vector"), _rational(points, "point")
+    pattern = PeriodicPattern(vectors, spots, faces, diagonals)
     numbers = [*pattern.lattice, *pattern.points]
     check_coordinates(numbers)
     check_common_denominator(numbers)
     return pattern
 
 
-def _rational(rows: Any) -> list[Any]:
+def _rational(rows: Any, what: str) -> list[Any]:
     """Rows with the literals of decimals in a file made exact; anything else stays."""
     if not isinstance(rows, list):
         raise NotFoldError(f"{shown(rows)} is not a list of pairs")
-    return [
-        [as_rational(getattr(x, "text", x)) for x in row] if isinstance(row, list | tuple) else row
-        for row in rows
-    ]
+    found = []
+    for k, row in enumerate(rows):
+        try:
+            exact = [as_rational(getattr(x, "text", x)) for x in row] if _is_row(row) else row
+        except NumberError as error:
+            raise type(error)(f"{what} {k}: {error}") from None
+        found.append(exact)
+    return found
+
+
+def _is_row(row: Any) -> bool:
+    return isinstance(row, list | tuple)
 
 
 def cell_document(cell: PeriodicPattern, title: str | None = None) -> dict[str, Any]:

@@ -67,11 +67,8 @@ def corner_triples(faces: Iterable[Any], count: int) -> list[Face]:
             )
         read = [_corner(face, corner, count) for corner in corners]
         result.append((read[0], read[1], read[2]))
-    if len(result) != 2 * count:
-        raise NotPeriodicError(
-            f"there are {len(result)} faces for {count} vertices in the cell: a triangulated cell "
-            f"has twice as many faces as vertices, here {2 * count}"
-        )
+    if not result:
+        raise MalformedPatternError("the cell has no faces")
     return result
 
 

@@ -168,6 +168,11 @@ class Folds:
         squared_length = d[:, 0] * d[:, 0] + d[:, 1] * d[:, 1]
         return cls(corners, *(x.astype(object) for x in (weights, left, right, squared_length)))
 
+    @cached_property
+    def areas(self) -> BigArray:
+        """The products c c' of twice the areas of the two faces, shape (E,)."""
+        return np.asarray(self.left * self.right)
+
     def at(self, vertices: BoolArray) -> tuple[Folds, IndexArray]:
         """The folds with an end among the vertices of a mask, and the vertices that they need.
 

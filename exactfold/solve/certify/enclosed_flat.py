@@ -57,7 +57,7 @@ def rational(
     folds = sheet.folds
     bends = folds.bends(heights)
     i, j = folds.corners[:, 0], folds.corners[:, 1]
-    areas = folds.left * folds.right
+    areas = folds.areas
     products = bends * (heights[j] - heights[i])
     twice = dict.fromkeys(sheet.unknowns, Fraction(0))  # 2 K_v, in the units of the integers
     flat = dict.fromkeys(sheet.unknowns, True)

@@ -72,8 +72,8 @@ def curvatures(folds: Folds, heights: BigArray, bits: int) -> Curvatures:
     """
     i, j = folds.corners[:, 0], folds.corners[:, 1]
     bends = folds.bends(heights)
-    terms = (bends * (heights[j] - heights[i]) << bits) // (folds.left * folds.right)
-    low = folds.summed(terms, -terms - 1, len(heights))  # -x >= -(floor(x) + 1)
+    terms = (bends * (heights[j] - heights[i]) << bits) // folds.areas
+    low = folds.summed(terms, ~terms, len(heights))  # -x >= -(floor(x) + 1), which is ~floor(x)
     degree = np.bincount(folds.corners[:, :2].ravel(), minlength=len(heights))
     return Curvatures(bits, bends, low, low + degree.astype(object))
 
@@ -144,7 +144,7 @@ def nappes(sheet: VertexEquations, bends: BigArray) -> dict[int, int]:
     folds, signs = sheet.folds, np.zeros(len(sheet.pattern.vertices), dtype=np.int64)
     signs[list(sheet.unknowns)] = near
     open_ = (signs[folds.corners[:, :2]] == 0).any(axis=1)
-    squares, areas = folds.squared_length[open_], (folds.left * folds.right)[open_]
+    squares, areas = folds.squared_length[open_], folds.areas[open_]
     lengths = np.array([isqrt(s << 2 * _LENGTH_BITS) for s in squares], dtype=object)
     # omega has the size of bends / areas; keep _LENGTH_BITS binary places of the smallest one.
     shift = max((int(c).bit_length() for c in areas), default=0) + _LENGTH_BITS
@@ -171,7 +171,7 @@ def _nappes_in_floats(sheet: VertexEquations, bends: BigArray) -> IntArray:
     folds, count = sheet.folds, len(sheet.pattern.vertices)
     none = np.zeros(len(sheet.unknowns), dtype=np.int64)
     try:
-        omega = (bends / (folds.left * folds.right)).astype(np.float64)
+        omega = (bends / folds.areas).astype(np.float64)
         lengths = np.sqrt(folds.squared_length.astype(np.float64))
     except OverflowError:
         return none
@@ -226,7 +226,7 @@ def _letters(sheet: VertexEquations, bends: BigArray, squared: Fraction) -> tupl
     """
     folds = sheet.folds
     top, bottom = squared.numerator, squared.denominator
-    most = 2 * top * (folds.left + folds.right) * folds.left * folds.right
+    most = 2 * top * (folds.left + folds.right) * folds.areas
     safe = bends * bends * folds.squared_length * bottom > most
     return tuple((f > 0) - (f < 0) if ok else 0 for f, ok in zip(bends, safe, strict=True))
 

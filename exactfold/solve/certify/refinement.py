@@ -7,6 +7,7 @@ exact bends and residuals, so that each step gains as many digits as a float has
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil, inf, log2
 
 import numpy as np
@@ -76,7 +77,7 @@ def _refined(
     pivots: bool,
 ) -> Heights | None:
     """`refine` with or without pivots off the diagonal."""
-    inner, areas = floats.unknowns, sheet.folds.left * sheet.folds.right
+    inner, areas = floats.unknowns, sheet.folds.areas
     square = sheet.size**2
     omega = ratio(sheet.folds.bends(start.values) * square, areas * start.denominator)
     # Rounding by 2^-places changes each K_v by at most a sixteenth of 2^-level.
@@ -137,6 +138,11 @@ class _Equations:
     units: tuple[int, int, int, int]
     bits: int
 
+    @cached_property
+    def _bottom(self) -> BigArray:
+        """The denominators of the bends, shape (E,)."""
+        return np.asarray(self.folds.areas * self.units[2])
+
     def rest(self, curvature: Curvatures) -> BigArray:
         """By how much the curvatures exceed those wanted."""
         return np.asarray(curvature.low[self.floats.unknowns] - self.wanted)
@@ -148,8 +154,8 @@ class _Equations:
     def _in_floats(
         self, curvature: Curvatures, rest: BigArray
     ) -> tuple[FloatArray, tuple[FloatArray, FloatArray, FloatArray]]:
-        square, unit, q, _ = self.units
-        omega = ratio(curvature.bends * square, self.folds.left * self.folds.right * q)
+        square, unit, *_ = self.units
+        omega = ratio(curvature.bends * square, self._bottom)
         excess = self.floats.scale * ratio(rest * square, unit)
         point = Point(np.zeros(0), omega, self.floats.lines(omega), excess)
         return omega, equations(self.floats, point, self.signs)

@@ -11,9 +11,12 @@ import numpy as np
 
 from exactfold._support.arrays import BigArray, BoolArray, FloatArray, IndexArray, IntArray
 from exactfold.rigidity.equations.sheet import VertexEquations
+from exactfold.solve.numeric.nested_dissection import nested_dissection
 
 _DENSE = 150
 """SciPy takes a while to load, so that small sheets do without."""
+_DISSECTED = 100_000
+"""Beyond so many unknowns, nested dissection finds a better order than minimum degree does."""
 
 
 Solver = Callable[[FloatArray], FloatArray]
@@ -30,8 +33,8 @@ class FloatSheet:
 
     The unit of length is the size of the sheet. Unknown k is vertex `unknowns[k]`. `scale` scales
     K_v so that l_v^2 - K_v >= 0 for the functional l_v with coefficient 1 at the hub
-    (docs/mathematics.md, Popping homotopy). Arrays have shapes over n unknowns, E folds and V
-    vertices.
+    (docs/mathematics.md, Popping homotopy). `places` are the points of the unknowns. Arrays have
+    shapes over n unknowns, E folds and V vertices.
     """
 
     unknowns: IndexArray
@@ -42,6 +45,7 @@ class FloatSheet:
     line_factor: FloatArray
     boundary_heights: FloatArray
     target: FloatArray
+    places: FloatArray
     dense: int = _DENSE
     """Up to so many unknowns, systems are solved as dense ones."""
 
@@ -49,8 +53,7 @@ class FloatSheet:
     def of(cls, sheet: VertexEquations) -> FloatSheet:
         """The exact data as floats; each float is rounded from exact integers."""
         folds, size = sheet.folds, sheet.size
-        areas = folds.left * folds.right
-        weights = ratio(folds.weights * size**2, areas[:, None])
+        weights = ratio(folds.weights * size**2, folds.areas[:, None])
         squares = (folds.squared_length / size**2).astype(np.float64)
         count = len(sheet.pattern.vertices)
         unknowns = np.array(sheet.unknowns, dtype=np.intp)
@@ -72,8 +75,12 @@ class FloatSheet:
         scale = cone / hub**2
         aims = sheet.targets
         target = np.array([float(aims.get(v, 0) * size**2) for v in sheet.unknowns]) * scale
+        points = np.array(sheet.pattern.integer_vertices[0], dtype=object)
+        places = ratio((points - points.min(axis=0))[unknowns], sheet.size)
+        line_factor = -0.5 / hub
         return cls(
-            unknowns, folds.corners, weights, lengths, scale, -0.5 / hub, boundary_heights, target
+            *(unknowns, folds.corners, weights, lengths),
+            *(scale, line_factor, boundary_heights, target, places),
         )
 
     @property
@@ -171,8 +178,8 @@ class FloatSheet:
         """Factors J, with the rows of_lines_v dl_v/dx + of_forms_v dK_v/dx, scaled.
 
         The scale is that of K_v. J has the pattern of a planar graph. It is factored by sparse LU
-        in minimum-degree order, with pivots on the diagonal unless they vanish, as another order
-        costs more. Newton's method mostly tolerates the accuracy that this loses. `pivots` asks for
+        in one fixed order, with pivots on the diagonal unless they vanish, as another order costs
+        more. Newton's method mostly tolerates the accuracy that this loses. `pivots` asks for
         full partial pivoting. Small sheets use dense matrices. Raises `SingularError`.
         """
         data = self.jacobian(omega, of_lines, of_forms)
@@ -191,15 +198,21 @@ class FloatSheet:
 
     @cached_property
     def _elimination(self) -> tuple[IndexArray, _Columns]:
-        """The unknowns in minimum-degree order, and the pattern of the Jacobian in this order.
+        """The unknowns in order of elimination, and the pattern of the Jacobian in this order.
 
-        SuperLU finds the order when it factors a matrix. All Jacobians have one pattern, so that
-        the order is found once.
+        All Jacobians have one pattern, so that the order is found once. SuperLU finds that of
+        minimum degree when it factors a matrix.
         """
         p = self._pattern
-        data = abs(self._line_data) + np.where(p.rows == p.columns, 1.0, 0.0)
-        place = _factors(data, p.rows, p.pointers, "MMD_AT_PLUS_A").perm_c
-        order = np.argsort(place)
+        if self.n > _DISSECTED:
+            upper = p.rows < p.columns
+            order = nested_dissection(self.places, np.stack([p.rows[upper], p.columns[upper]], 1))
+            place = np.empty_like(order)
+            place[order] = np.arange(self.n)
+        else:
+            data = abs(self._line_data) + np.where(p.rows == p.columns, 1.0, 0.0)
+            place = _factors(data, p.rows, p.pointers, "MMD_AT_PLUS_A").perm_c
+            order = np.argsort(place)
         return order, _Columns.of(place[p.rows], place[p.columns], self.n)
 
     def part(self, chosen: IndexArray, x: FloatArray) -> FloatSheet:
@@ -221,6 +234,7 @@ class FloatSheet:
             self.line_factor[chosen],
             self.heights(x)[names],
             self.target[chosen],
+            self.places[chosen],
             dense=0,  # the matrix of several patches is sparse
         )
 
@@ -306,7 +320,8 @@ def _factors(data: FloatArray, rows: IndexArray, pointers: IndexArray, order: st
             matrix,
             permc_spec=order,
             diag_pivot_thresh=0.0,
-            panel_size=1,  # columns of a planar graph share little, so that panels do not pay
+            # Columns of a planar graph share little, so that panels pay on large sheets only.
+            panel_size=1 if n <= _DISSECTED else None,
             options={"SymmetricMode": True},
         )
     except RuntimeError as error:

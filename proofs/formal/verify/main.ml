@@ -1,6 +1,7 @@
 (* exactfold-verify: verifies certificates of exactfold with a program that is proved in Coq. *)
 
 open Reading
+open Sheets
 module V = Verified
 
 let usage = "usage: exactfold-verify FILE\n\n\
@@ -9,57 +10,15 @@ let usage = "usage: exactfold-verify FILE\n\n\
   Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
   70 a defect, or memory is short.\n"
 
-let plural n word =
-  let ending = if n = 1 then word else if word.[String.length word - 1] = 'x' then
-    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ "s" in
-  Printf.sprintf "%d %s" n ending
-let not_verified text = Printf.printf "not verified here: %s\n" text
-let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
-
-(* The drawing and the numbered folds that are proposed are those of the file; with a reflex corner the first
-   triangle of the drawing is one more. *)
-let belongs sheet corner (d : V.drawing) (p : V.prepared) =
-  let numbered = List.mapi (fun name (i, j, l, m) -> (name, (((i, j), l), m))) (Array.to_list (folds sheet)) in
-  let triangles = if corner = None then d.triangles else List.tl d.triangles in
-  if d.points <> Array.to_list sheet.points || triangles <> List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles
-    || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
-  then failwith "the sheet that is proposed is not that of the file"
-
-(* The vertices inside the sheet of the file, and the number of those on its boundary. *)
-let parts corner (d : V.drawing) =
-  let inside = List.filter (fun v -> corner <> Some v) d.inside in
-  (Array.of_list (List.rev inside), List.length d.border + List.length d.inside - List.length inside)
-
-let shown_sheet sheet corner (d : V.drawing) =
-  let inside, rim = parts corner d in
-  Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
-    (plural (Array.length sheet.points) "vertex") (Array.length inside) rim
-    (plural (List.length sheet.triangles) "triangle") (plural (Array.length (folds sheet)) "fold") sheet.digest
-
-let sound d p = function
-  | None -> V.sound d p
-  | Some r -> V.sound d p && V.closes d r
-
-let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
-  \          closes the notch.\n" r
-
 (* --- all branches --- *)
 
 (* [flat] is the number of letters F, of which the formal proof says nothing. *)
 type root = { bits : int; center : Z.t array; letters : int -> bool option; flat : int }
 
-let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
-
 let signed bytes at width =
   let negative = Char.code (Bytes.get bytes (at + width - 1)) > 127 in
   let n = Z.of_bits (Bytes.sub_string bytes at width) in
   if negative then Z.sub n (Z.shift_left Z.one (8 * width)) else n
-
-let letter_of root text k = match text.[k] with
-  | 'M' -> Some false
-  | 'V' -> Some true
-  | 'U' | 'F' -> None
-  | c -> refuse "root %d has a fold with the letter %c" root c
 
 (* The roots of a block, which are read one by one. *)
 let block size folds number length data =
@@ -118,14 +77,12 @@ let all_branches header blocks claims =
   only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches" claims;
   ignore (entry "provenance" header);
   if string "kind" (entry "kind" evidence) <> "chambers" then refuse "unknown kind of evidence";
-  let sheet = sheet (entry "pattern" header) in
-  if items "triangles" (entry "triangles" evidence) <> [] then
-    refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
-  let closed, corner = Proposing.closed sheet in
-  let d = Proposing.drawing closed in
-  let inside, rim = parts corner d in
+  let file = sheet (entry "pattern" header) in
+  let triangles = items "triangles" (entry "triangles" evidence) in
+  let t = place_of file (List.map (triangulated file " multipliers") triangles) in
+  let { d; p; corner; inside; _ } = t in
   let size = Array.length inside in
-  if rim <> 4 then refuse "the sheet has %d boundary vertices, not four" rim;
+  if t.rim <> 4 then refuse "the sheet has %d boundary vertices, not four" t.rim;
   if size = 0 || size > 30 then refuse "%d vertices inside: between 1 and 30 are verified" size;
   let lifted = match corner, entry "chart" evidence with
     | None, Null -> None
@@ -133,19 +90,21 @@ let all_branches header blocks claims =
     | Some r, chart -> Some (notch_chart chart r inside) in
   let length = small ~least:1 "block" (entry "block" evidence) in
   if 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
-  shown_sheet sheet corner d;
-  let p = Proposing.prepared sheet d in
-  belongs sheet corner d p;
+  shown_sheet t;
+  check_sheet t;
   let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
-  let claim key = Z.to_string (Z.of_int (small key (entry key claims))) in
+  let claim key = match entry key claims with
+    | Number n -> Z.to_string (digits key n)
+    | _ -> refuse "%s is no number" key in
   List.iter (fun (key, expected) -> agrees key (claim key) expected)
-    [ ("interior", string_of_int size); ("boundary", "4"); ("folds", string_of_int folds); ("degrees_of_freedom", "1");
-      ("distinct", count); ("with_multiplicity", count); ("real", count); ("nonreal", "0") ];
-  agrees "sha256" (string "sha256" (entry "sha256" claims)) sheet.digest;
+    [ ("interior", string_of_int (size + List.length t.hidden)); ("boundary", "4");
+      ("folds", string_of_int (Array.length (Reading.folds file))); ("degrees_of_freedom", "1"); ("distinct", count);
+      ("with_multiplicity", Z.to_string (Z.shift_left Z.one (size + List.length t.hidden))); ("real", count); ("nonreal", "0") ];
+  agrees "sha256" (string "sha256" (entry "sha256" claims)) file.digest;
   let continued = string "true_branches" (entry "true_branches" claims) in
   if continued <> "proved" then invalid "the claim \"true_branches\" is not \"proved\", as in every file of this version";
   let blocks = Array.of_list blocks in
-  let slot = Array.make (Array.length sheet.points) (-1) in
+  let slot = Array.make (Array.length file.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
   let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) and rough = Proposing.rough corner p in
   let number e = let n = ref 0 in Array.iteri (fun k v -> if not (e v) then n := !n lor (1 lsl k)) inside; !n in
@@ -154,7 +113,7 @@ let all_branches header blocks claims =
     if fst !now <> n / length then now := (n / length, block size folds (n / length) length blocks.(n / length));
     snd !now (n mod length) in
   let heights root bits =
-    let h = Array.make (Array.length sheet.points) Z.zero in
+    let h = Array.make (Array.length file.points) Z.zero in
     let shift = bits - root.bits in
     Array.iteri (fun k v -> let c = root.center.(k) in
       h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
@@ -201,7 +160,6 @@ let all_branches header blocks claims =
       | None -> V.verify_all d p top given asked
       | Some r -> V.verify_all_notched d p r given asked
     with Exit -> false in
-  if not (sound d p corner) then unverified "the sheet is not a convex triangulated one, nor one with a notch";
   if not (verify false || verify true) then begin
     let n = !current in
     if n >= 0 then List.iter (fun (b : V.hub) -> if corner <> Some b.at_vertex && not (V.is_bent (root n).letters b) then
@@ -210,94 +168,20 @@ let all_branches header blocks claims =
   end;
   if size > 13 then prerr_newline ();
   Printf.printf "VERIFIED  exactly %s branches to second order, complex ones included; all are real and\n\
-    \          simple, one for each sign vector; their folds have the letters M and V of the file.\n\
-    \          By theorem %s.\n" count (if corner = None then "all_verified" else "all_notched_verified");
+    \          %s, one for each sign vector; their folds have the letters M and V of the file.\n\
+    \          By theorem %s.\n" count (if t.parts = [] then "simple" else "different")
+    (match corner, t.parts with
+    | None, [] -> "all_verified"
+    | None, _ -> "all_emptied_verified"
+    | Some _, [] -> "all_notched_verified"
+    | Some _, _ -> "all_notched_emptied_verified");
   Option.iter raised corner;
+  stay_flat t;
+  meaning t;
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
+  if t.parts <> [] then not_verified "the multiplicity of each branch";
   if corner <> None then not_verified "that the chart of the file names this side of each branch";
   not_verified "that every branch continues to a true motion"
-
-(* --- one branch --- *)
-
-(* Whether the boundary saddle of heights is positive: their sum with the weights of the affine dependency of the
-   four boundary vertices. The vertex with the smallest number has a positive weight, or, if the others are in
-   line, both ends of this line. The order of the four does not matter. *)
-let positive_saddle sheet (a, b, c, d) h =
-  let turn x y z =
-    let (px, py), (qx, qy), (rx, ry) = sheet.points.(x), sheet.points.(y), sheet.points.(z) in
-    Z.sub (Z.mul (Z.sub qx px) (Z.sub ry py)) (Z.mul (Z.sub qy py) (Z.sub rx px)) in
-  let weights = [ (a, turn b c d); (b, Z.neg (turn a c d)); (c, turn a b d); (d, Z.neg (turn a b c)) ] in
-  let first = Z.sign (List.assoc (min (min a b) (min c d)) weights) in
-  let most = List.fold_left (fun n (_, w) -> n + Z.sign w) 0 weights in
-  let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
-  Z.sign sum * (if first <> 0 then first else most) > 0
-
-let one_branch data =
-  let claims = entry "claims" data and evidence = entry "evidence" data in
-  only "format version pattern claims evidence provenance" data;
-  only "gauge vertex_signs assignment squared_distance" claims;
-  only "emptied heights denominator" evidence;
-  let sheet = sheet (entry "pattern" data) in
-  if items "emptied" (entry "emptied" evidence) <> [] then
-    refuse "the sheet has triangulated triangles, which are not in the scope of the formal proof";
-  let closed, corner = Proposing.closed sheet in
-  let d = Proposing.drawing closed in
-  shown_sheet sheet corner d;
-  let p = Proposing.prepared sheet d in
-  belongs sheet corner d p;
-  let h = Array.of_list (List.map (whole "a height") (items "heights" (entry "heights" evidence))) in
-  if Z.leq (whole "denominator" (entry "denominator" evidence)) Z.zero then invalid "the denominator is not positive";
-  let inside, _ = parts corner d in
-  let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
-  let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
-  if Array.length h <> Array.length sheet.points || Array.length signs <> Array.length inside then
-    refuse "the numbers of heights, signs and vertices differ";
-  let gauge = string "gauge" (entry "gauge" claims) in
-  if gauge = "saddle" then begin
-    match d.border with
-    | [ _; _; _ ] when corner <> None ->
-      if List.exists (fun v -> not (Z.equal h.(v) Z.zero)) d.border then
-        invalid "the boundary vertices other than the reflex corner are not all at height 0"
-    | [ w; x; y; z ] -> if not (positive_saddle sheet (w, x, y, z) h) then invalid "the boundary saddle is not positive"
-    | _ -> invalid "the gauge \"saddle\" needs four boundary vertices"
-  end
-  else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim"
-  else if corner <> None then invalid "the gauge \"rim\" needs a convex boundary";
-  let claimed = Hashtbl.create 64 in
-  Option.iter (fun r -> Hashtbl.replace claimed r 1) corner;
-  Array.iteri (fun k v -> Hashtbl.replace claimed v signs.(k)) inside;
-  (* a vertex that is claimed to be flat lies in both closed nappes: the test is made in that of the heights *)
-  let ups = Array.make (Array.length h) false in
-  List.iter (fun (b : V.hub) ->
-    let v = b.at_vertex in
-    let curved, side = V.measured (fun u -> h.(u)) h.(v) b.wedges in
-    if Z.equal curved Z.zero then
-      refuse "the heights have curvature 0 at vertex %d; heights with positive curvatures are verified here" v;
-    ups.(v) <- (if Hashtbl.find claimed v = 0 then Z.gt side Z.zero else Hashtbl.find claimed v > 0)) p.V.hubs;
-  let text = string "assignment" (entry "assignment" claims) in
-  if String.length text <> List.length p.V.folds then refuse "the number of letters is wrong";
-  let letters = letter_of 0 text in
-  if not (sound d p corner) then unverified "the sheet is not a convex triangulated one, nor one with a notch";
-  let up v = ups.(v) and given u = h.(u) in
-  if not (match corner with
-    | None -> V.verify_one d p up given letters
-    | Some r -> V.verify_one_notched d p r up given letters) then unverified "the branch did not pass the test";
-  let bent = List.filter (fun (b : V.hub) -> corner <> Some b.at_vertex && V.is_bent letters b) p.V.hubs in
-  List.iter (fun (b : V.hub) -> if Hashtbl.find claimed b.at_vertex = 0 then
-    invalid "vertex %d has the sign 0, but a fold with a letter M or V" b.at_vertex) bent;
-  let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) 0 signs in
-  let others = Array.length inside - List.length bent and flat = flats text in
-  Printf.printf "VERIFIED  exactly one %s lies in the closed nappes of %s.\n\
-    \          It has the letters M and V of the file, and the signs of the %s where they\n\
-    \          end. By theorem %s.\n"
-    (if corner = None then "solution over these boundary heights" else "branch")
-    (if zeros = 0 then "these signs" else "these signs,\n          at vertices with the sign 0 those of the heights")
-    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex")
-    (if corner = None then "one_verified" else "one_notched_verified");
-  Option.iter raised corner;
-  if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
-  if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
-  not_verified "the squared distance"
 
 (* --- files --- *)
 
@@ -327,7 +211,7 @@ let verify path =
   else begin
     let data = parse text in
     match kind data with
-    | "exactfold branch", "1" -> one_branch data
+    | "exactfold branch", "1" -> Branch.one_branch data
     | format, version -> known format version
   end
 

@@ -50,13 +50,31 @@ let pinned sheet = function
     choose 1
   | cycle -> cycle
 
+(* The sheet without the vertices inside triangulated triangles, which are then on no face; which vertices these are;
+   the faces that it shares with the file; and the triangles, with the faces that fill them in the file. *)
+let emptied sheet triangles =
+  let owner = Array.make (Array.length sheet.points) (-1) in
+  List.iteri (fun k (_, inside) -> List.iter (fun v -> owner.(v) <- k) inside) triangles;
+  let filling = Array.make (List.length triangles + 1) [] in
+  List.iter (fun (a, b, c) -> let k = 1 + max owner.(a) (max owner.(b) owner.(c)) in
+    filling.(k) <- (a, b, c) :: filling.(k)) (List.rev sheet.triangles);
+  let part k ((a, b, c), inside) : V.part =
+    let own = filling.(k + 1) in
+    let next = next_of { sheet with triangles = own } in
+    let fans = Array.mapi (fun v steps -> if steps = [] then [] else fst (fan v steps)) next in
+    { corner_a = a; corner_b = b; corner_c = c; hidden = inside;
+      pieces = List.map (fun (x, y, z) -> ((x, y), z)) own; fans_in = Array.to_list fans } in
+  let common = filling.(0) in
+  ({ sheet with triangles = List.map fst triangles @ common }, Array.map (fun k -> k >= 0) owner, common,
+    List.mapi part triangles)
+
 (* The reflex corner on a boundary of four, and the sheet whose first triangle closes its notch. Other boundaries
    with such a corner are refused by name; the verified program refuses them, too. *)
-let closed sheet =
+let closed sheet hidden =
   List.iter (fun (a, b, c) -> let at v = sheet.points.(v) in
     if Z.leq (zturn (minus (at b) (at a)) (minus (at c) (at a))) Z.zero then
       refuse "the face %d, %d, %d does not run counter-clockwise" a b c) sheet.triangles;
-  let fans = Array.mapi (fun v steps -> fan v steps) (next_of sheet) in
+  let fans = Array.mapi (fun v steps -> if hidden.(v) then ([], true) else fan v steps) (next_of sheet) in
   let rim = List.filter (fun v -> not (snd fans.(v))) (List.init (Array.length fans) Fun.id) in
   let ends v = let l = fst fans.(v) in (List.hd l, List.nth l (List.length l - 1)) in
   let turned v = let first, last = ends v and p = sheet.points.(v) in
@@ -68,10 +86,10 @@ let closed sheet =
     ({ sheet with triangles = (r, last, first) :: sheet.triangles }, Some r)
   | r :: _ -> refuse "the corner at vertex %d is reflex, of %d: only sheets with four corners may have one" r (List.length rim)
 
-let drawing sheet : V.drawing =
+let drawing sheet hidden : V.drawing =
   let next = next_of sheet in
-  let fans = Array.mapi (fun v steps -> fan v steps) next in
-  let all = List.init (Array.length fans) Fun.id in
+  let fans = Array.mapi (fun v steps -> if hidden.(v) then ([], true) else fan v steps) next in
+  let all = List.filter (fun v -> not hidden.(v)) (List.init (Array.length fans) Fun.id) in
   let inside, rim = List.partition (fun v -> snd fans.(v)) all in
   if rim = [] then refuse "the sheet has no boundary";
   let fans = Array.map fst fans in
@@ -80,6 +98,34 @@ let drawing sheet : V.drawing =
   (* the greatest number first, so that the sign vectors come in the order of the roots *)
   { points = Array.to_list sheet.points; inside = List.rev inside; border = pinned sheet cycle;
     triangles = List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles; fans_of = Array.to_list fans }
+
+(* An order in which the faces can be glued to each other, the last one first: each closes the star of its first
+   vertex, or it has a side in common with those before and a third vertex that is new. *)
+let gluing (d : V.drawing) =
+  let size = List.length d.points in
+  let placed = Array.make size false and inner = Array.make size false and left = Array.make size 0 in
+  let sides = Hashtbl.create 256 in
+  let side a b = Hashtbl.mem sides (a, b) || Hashtbl.mem sides (b, a) in
+  List.iter (fun v -> inner.(v) <- true) d.inside;
+  List.iter (fun ((a, b), c) -> List.iter (fun v -> left.(v) <- left.(v) + 1) [ a; b; c ]) d.triangles;
+  let turns ((a, b), c) = [ (a, b, c); (b, c, a); (c, a, b) ] in
+  let closes (a, b, c) = inner.(a) && left.(a) = 1 && side a b && side a c in
+  let extends (a, b, c) = side a b && not placed.(c) in
+  let place (a, b, c) =
+    List.iter (fun v -> placed.(v) <- true; left.(v) <- left.(v) - 1) [ a; b; c ];
+    List.iter (fun e -> Hashtbl.replace sides e ()) [ (a, b); (b, c); (c, a) ] in
+  let rec glue order faces =
+    let try_one (order, rest) face =
+      let found test = List.find_opt test (turns face) in
+      match found closes, found extends with
+      | Some (a, b, c), _ -> place (a, b, c); ((true, ((a, b), c)) :: order, rest)
+      | None, Some (a, b, c) -> place (a, b, c); ((false, ((a, b), c)) :: order, rest)
+      | None, None -> (order, face :: rest) in
+    let longer, rest = List.fold_left try_one (order, []) faces in
+    if rest = [] || List.compare_lengths rest faces = 0 then longer else glue longer (List.rev rest) in
+  match d.triangles with
+  | ((a, b), c) :: faces -> place (a, b, c); glue [ (false, ((a, b), c)) ] faces
+  | [] -> []
 
 (* --- its forms --- *)
 

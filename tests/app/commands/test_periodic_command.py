@@ -102,6 +102,22 @@ def test_a_cell_is_viewed(tmp_path: Path) -> None:
         assert message in run("view", *arguments).stderr
 
 
+def test_rigid_panels_have_a_certificate(tmp_path: Path) -> None:
+    file = tmp_path / "panels.json"
+    data = json.loads(run("count", "square-twist-cell", "--json", "--certificate", file).stdout)
+    assert data["certificate"] == str(file)
+    checked = run("check", file)
+    assert checked.exit_code == PROVED
+    assert "2 components of periodic motions of rigid panels to second order, 2 planar" in " ".join(
+        checked.stdout.split()
+    )
+    words = run("count", "miura-cell", "--certificate", file).stdout
+    assert f"certificate:{file}" in "".join(words.split())
+    undecided = run("count", "waterbomb-cell", "--certificate", tmp_path / "none.json")
+    assert "no certificate was written" in undecided.stderr
+    assert not (tmp_path / "none.json").exists()
+
+
 def test_rigid_panels_in_json_and_words() -> None:
     result = run("count", "miura-cell", "--json")
     assert result.exit_code == PROVED
@@ -112,7 +128,7 @@ def test_rigid_panels_in_json_and_words() -> None:
     assert (planar["letters"], planar["planar"], planar["folds"]) == ("MVMMVVVM", True, "proved")
     words = run("count", "square-twist-cell").stdout
     assert words.startswith("2 components of periodic motions of rigid panels - PROVED")
-    assert "Q(sqrt (1/5))" in words
+    assert "Q(sqrt 5)" in words
     drawing = run("count", "miura", "--periodic", "--cell", "4,2")
     assert drawing.exit_code == PROVED
     assert "across 0,1" in drawing.stdout
@@ -193,7 +209,7 @@ def test_a_picture_by_direction(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("miura-cell", "--certificate", "c.json"), "have no certificate"),
+        (("miura-cell", "--direction", "all", "--certificate", "c.json"), "has no certificate"),
         (("miura-cell", "--periodic", "--direction", "1,2"), "give --direction, or --periodic"),
         (("miura-cell", "--direction", "3"), "is not a direction such as 3,4"),
         (("miura-cell", "--direction", "0,0"), "0,0 is no direction"),

@@ -70,7 +70,7 @@ def test_lines_that_roll_up_are_a_family_for_one_direction() -> None:
 def test_the_square_twist_has_two_planar_modes_over_the_root_of_five() -> None:
     twist = count_panel_cell("square-twist-cell")
     assert [(m.dimension, m.planar, m.folds) for m in twist] == [(1, True, Verdict.PROVED)] * 2
-    assert twist.field_names == ("Q(sqrt (1/5))",)
+    assert twist.field_names == ("Q(sqrt 5)",)
     for motion in twist:  # the conditions at a vertex, in floats
         torus = Torus(twist.pattern)
         (part,) = motion.parts

@@ -50,7 +50,7 @@ def test_fold_with_a_lattice() -> None:
     [
         ({**GRID, "format": "other"}, NotFoldError, "not the cell of a periodic sheet"),
         ({**GRID, "points": "0"}, NotFoldError, "`points` is '0', not a list"),
-        ({**GRID, "lattice": [["1", "x"], ["0", "1"]]}, NumberError, "x"),
+        ({**GRID, "lattice": [["1", "x"], ["0", "1"]]}, NumberError, "lattice vector 0: 'x'"),
         ({**FOLD, "frame_exactfold:lattice": 1}, NotFoldError, "1 is not a list of pairs"),
         ({**FOLD, "faces_exactfold:offsets": [[]]}, NotFoldError, "1 entries for 2 faces"),
         ({**FOLD, "faces_exactfold:offsets": [[], 1]}, NotFoldError, "face 0 in"),

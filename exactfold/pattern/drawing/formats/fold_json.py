@@ -6,7 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
+from itertools import chain
 from typing import Any, Final
 
 from exactfold._support.plurals import agreeing, counted
@@ -54,21 +55,27 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return result
 
 
-def _integer(digits: str) -> int:
-    """The value of a JSON integer of any length; `int` alone refuses more than 4300 digits."""
-    return int(digits) if len(digits) < 1000 else parse_rational(digits).numerator
+def _loaded(text: str) -> Any:
+    """The value of JSON text, with integers of any length; `int` refuses more than 4300 digits."""
+    load = partial(
+        json.loads,
+        text.removeprefix("\ufeff"),
+        parse_float=_Literal,
+        parse_constant=_Literal,
+        object_pairs_hook=_unique,
+    )
+    try:
+        return load()
+    except json.JSONDecodeError:
+        raise
+    except ValueError:
+        return load(parse_int=lambda digits: parse_rational(digits).numerator)
 
 
 def json_object(text: str) -> dict[str, Any]:
     """The only JSON object in a text; raises `NotFoldError` for any other text."""
     try:
-        document = json.loads(
-            text.removeprefix("\ufeff"),
-            parse_float=_Literal,
-            parse_int=_integer,
-            parse_constant=_Literal,
-            object_pairs_hook=_unique,
-        )
+        document = _loaded(text)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         cut = (
@@ -108,20 +115,31 @@ def index_lists(
     document: Mapping[str, Any], key: str, kind: str, count: int
 ) -> Sequence[tuple[int, ...]]:
     """The lists of vertex indices under a key; raises `NotFoldError` unless all are below count."""
-    result = []
-    for k, entry in enumerate(list_at(document, key)):
-        if not isinstance(entry, list):
-            raise NotFoldError(f"{kind} {k} in `{key}` is {shown(entry)}, not a list of vertices")
-        for v in entry:
-            if isinstance(v, bool) or not isinstance(v, int):
-                raise NotFoldError(f"{kind} {k} in `{key}`: {shown(v)} is not a vertex index")
-            if not 0 <= v < count:
-                raise NotFoldError(
-                    f"{kind} {k} in `{key}` uses vertex {shown(v)}, but there "
-                    f"{agreeing(count, 'is')} {counted(count, 'vertex')}"
-                )
-        result.append(tuple(entry))
-    return result
+    entries = list_at(document, key)
+    if set(map(type, entries)) <= {list}:
+        indices = list(chain.from_iterable(entries))
+        if set(map(type, indices)) <= {int} and all(0 <= v < count for v in _extremes(indices)):
+            return list(map(tuple, entries))
+    raise next(filter(None, (_fault(k, e, key, kind, count) for k, e in enumerate(entries))))
+
+
+def _extremes(indices: Sequence[int]) -> tuple[int, ...]:
+    return (min(indices), max(indices)) if indices else ()
+
+
+def _fault(index: int, entry: object, key: str, kind: str, count: int) -> NotFoldError | None:
+    """What is wrong with one list of vertex indices; None if nothing is."""
+    if not isinstance(entry, list):
+        return NotFoldError(f"{kind} {index} in `{key}` is {shown(entry)}, not a list of vertices")
+    for v in entry:
+        if isinstance(v, bool) or not isinstance(v, int):
+            return NotFoldError(f"{kind} {index} in `{key}`: {shown(v)} is not a vertex index")
+        if not 0 <= v < count:
+            return NotFoldError(
+                f"{kind} {index} in `{key}` uses vertex {shown(v)}, but there "
+                f"{agreeing(count, 'is')} {counted(count, 'vertex')}"
+            )
+    return None
 
 
 def components(vertex: int, row: object) -> tuple[Fraction, Fraction, Fraction]:
@@ -170,7 +188,7 @@ def exact_points(
             f"`{EXACT_KEY}` has {len(rows)} vertices and `vertices_coords` has {len(stated)}: "
             f"delete `{EXACT_KEY}` if another program changed the pattern"
         )
-    tolerance = AGREEMENT * max(abs(c) for point in stated for c in point[:2])
+    tolerance: Fraction | None = None
     result = []
     for v, row in enumerate(rows):
         if not isinstance(row, list) or len(row) != 2 or not all(isinstance(c, str) for c in row):
@@ -180,7 +198,12 @@ def exact_points(
         except NumberError as error:
             raise NumberError(f"vertex {v} in `{EXACT_KEY}`: {error}") from None
         near_x, near_y = stated[v][:2]
-        if (x != near_x or y != near_y) and max(abs(x - near_x), abs(y - near_y)) > tolerance:
+        if x == near_x and y == near_y:
+            result.append((x, y))
+            continue
+        if tolerance is None:
+            tolerance = AGREEMENT * max(abs(c) for point in stated for c in point[:2])
+        if max(abs(x - near_x), abs(y - near_y)) > tolerance:
             raise StaleExactCoordinatesError(
                 f"vertex {v}: `{EXACT_KEY}` and `vertices_coords` disagree; delete `{EXACT_KEY}` "
                 "if another program moved the vertex"

@@ -16,7 +16,7 @@ from exactfold.pattern.drawing.meant.values import Edge, Kind, Relation
 from exactfold.pattern.remembered import remembered
 
 if TYPE_CHECKING:
-    from exactfold._support.arrays import FloatArray, IndexArray
+    from exactfold._support.arrays import BoolArray, FloatArray, IndexArray, IntArray
     from exactfold.exact.surds import Number
 
 NEAREST: Final = 3e-3
@@ -32,6 +32,8 @@ _SMALL: Final = 16
 """On sheets of so many vertices plain floats look first, as NumPy takes longer to load."""
 _FURTHER: Final = 1.01
 """Plain floats and arrays agree about what is this many times further off than `NEAREST`."""
+_FITS: Final = 2**61
+"""Products below this, rounding included, are 64-bit integers."""
 _TRUST: Final = 1e-9
 """Angles from floats are good to this; smaller defects are computed exactly. All are if positions
 are only enclosed: then the angles are those of exact directions."""
@@ -87,11 +89,15 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     points: Sequence[tuple[Number, Number]]
     points, *_ = getattr(sheet, "integer_vertices", (sheet.vertices,))
     directions: Mapping[Edge, tuple[Number, Number]] = getattr(sheet, "directions", {})
+    whole = None if directions else _small_integers(points)
     rows = []  # for each test: the defects of its near relations, their places, its number, rows
     for k, test in enumerate(tests):
         defects = test.off * test.shortest / size
         chosen = np.flatnonzero(defects < NEAREST)
-        for row in chosen[test.off[chosen] < trusted].tolist():
+        open_ = chosen[test.off[chosen] < trusted]
+        holds = test.hold(whole, open_)
+        defects[open_[holds]] = 0.0
+        for row in open_[~holds].tolist():
             defects[row] = _exact(points, directions, test.terms(row)) * test.shortest[row] / size
         chosen = chosen[defects[chosen] > 0]
         rows.append((defects[chosen], test.order[chosen], np.full(len(chosen), k), chosen))
@@ -105,6 +111,15 @@ def left_relations(sheet: Sheet) -> tuple[Relation, ...]:
     nearest = first[np.lexsort((order[first], found[first]))][:believed]
     near = zip(number[nearest], row_in_test[nearest], found[nearest], strict=True)
     return tuple(tests[k].relation(int(row), float(defect)) for k, row, defect in near)
+
+
+def _small_integers(points: Sequence[tuple[Number, Number]]) -> IntArray | None:
+    """The points as 64-bit integers whose differences are such, too; None if they are not."""
+    import numpy as np
+
+    if not all(type(x) is int is type(y) and max(abs(x), abs(y)) < _FITS for x, y in points):
+        return None
+    return np.array(points, dtype=np.int64)
 
 
 def _believed(defects: FloatArray, expected: float) -> int:
@@ -209,6 +224,24 @@ class _Tests:
         if kind != "kawasaki":
             off[np.cos(total) > 0] = pi / 2  # two edges on the same side form no path
         return cls(kind, hubs, ends, order, off, np.hypot(x, y).min(axis=1))
+
+    def hold(self, points: IntArray | None, rows: IndexArray) -> BoolArray:
+        """Which of the relations in these rows hold exactly, as far as 64-bit integers can tell.
+
+        The product of the directions, conjugated where the sign is negative, is then real.
+        """
+        import numpy as np
+
+        if points is None:
+            return np.zeros(len(rows), dtype=bool)
+        x, y = np.ones(len(rows), dtype=np.int64), np.zeros(len(rows), dtype=np.int64)
+        largest = np.ones(len(rows))
+        for k, w in enumerate(self.ends[rows].T):
+            a, b = (points[w] - points[self.hubs[rows]]).T
+            b = b if k % 2 == 0 else -b
+            x, y = x * a - y * b, x * b + y * a
+            largest *= abs(a) + abs(b)
+        return np.asarray((y == 0) & (largest < _FITS))
 
     def terms(self, row: int) -> _Terms:
         """The edges of a relation, and the signs of their angles."""

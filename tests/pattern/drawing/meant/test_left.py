@@ -56,6 +56,31 @@ def test_a_sum_of_kawasaki(height, defects):
     assert [relation.defect for relation in near] == pytest.approx(defects, rel=1e-6)
 
 
+def _grid(steps: int, moved: Fraction) -> CreasePattern:
+    """A triangulated grid with one interior vertex moved to the right."""
+    side = range(steps + 1)
+    points = [(Fraction(x), Fraction(y)) for y in side for x in side]
+    middle = (steps + 2) * (steps // 2)
+    points[middle] = (points[middle][0] + moved, points[middle][1])
+    corners = [x + (steps + 1) * y for y in range(steps) for x in range(steps)]
+    faces = [(c, c + 1, c + steps + 2) for c in corners]
+    return CreasePattern(points, [*faces, *((c, c + steps + 2, c + steps + 1) for c in corners)])
+
+
+@pytest.mark.parametrize("moved", [Fraction(0), Fraction(1, 2**26), Fraction(1, 10**25)])
+def test_integers_of_64_bits_and_of_any_size_find_the_same(monkeypatch, moved):
+    """Straight lines and sums of Kawasaki at six folds; the last move is beyond 64 bits."""
+    one_by_one, rows = left._exact, []
+    monkeypatch.setattr(left, "_exact", lambda *args: rows.append(1) or one_by_one(*args))
+    found, few = left_relations(_grid(32, moved)), len(rows)
+    rows.clear()
+    monkeypatch.setattr(left, "_small_integers", lambda points: None)
+    assert left_relations(_grid(32, moved)) == found
+    assert bool(found) == bool(moved)
+    assert (few == 0) == (not moved)
+    assert len(rows) > 31 * 31 * 4
+
+
 @pytest.mark.parametrize(("off", "number"), [(0, 0), ("1e-11", 1)])
 def test_a_sum_of_kawasaki_at_six_folds(off, number):
     """No two folds are opposite, but every other sector adds up to 180 degrees."""

@@ -1,0 +1,83 @@
+(* The sheet of a certificate as it is verified, and what is said of it. *)
+
+open Reading
+module V = Verified
+
+let plural n word =
+  let ending = if n = 1 then word else if word.[String.length word - 1] = 'x' then
+    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ "s" in
+  Printf.sprintf "%d %s" n ending
+let not_verified text = Printf.printf "not verified here: %s\n" text
+let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
+
+(* The sheet of a file, without the vertices inside its triangulated triangles, and if a corner is reflex with a
+   first triangle that closes its notch; [inside] are the vertices inside the sheet without these two. *)
+type place = {
+  file : sheet; thin : sheet; d : V.drawing; p : V.prepared; corner : int option; hidden : int list;
+  common : (int * int * int) list; parts : V.part list; inside : int array; rim : int
+}
+
+let triangulated sheet more j =
+  only ("corners inside" ^ more) j;
+  let vertex j = small ~most:(Array.length sheet.points - 1) "a vertex of a triangle" j in
+  match List.map vertex (items "corners" (entry "corners" j)), items "inside" (entry "inside" j) with
+  | [ a; b; c ], inside -> ((a, b, c), List.map vertex inside)
+  | _ -> refuse "a triangle has not three corners"
+
+let place_of file triangles =
+  let thin, hidden, common, parts = Proposing.emptied file triangles in
+  let closed, corner = Proposing.closed thin hidden in
+  let d = Proposing.drawing closed hidden in
+  let p = Proposing.prepared thin d in
+  let inside = List.filter (fun v -> corner <> Some v) d.inside in
+  (* the drawings and the numbered folds that are proposed are those of the file *)
+  let pair (a, b, c) = ((a, b), c) in
+  let numbered = List.mapi (fun name (i, j, l, m) -> (name, (((i, j), l), m))) (Array.to_list (folds thin)) in
+  if d.points <> Array.to_list file.points
+    || List.sort compare (List.concat_map (fun (q : V.part) -> q.pieces) parts @ List.map pair common)
+      <> List.sort compare (List.map pair file.triangles)
+    || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
+  then failwith "the sheet that is proposed is not that of the file";
+  { file; thin; d; p; corner; hidden = List.concat_map snd triangles; common; parts;
+    inside = Array.of_list (List.rev inside); rim = List.length d.border + List.length d.inside - List.length inside }
+
+let shown_sheet t =
+  Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
+    (plural (Array.length t.file.points) "vertex") (Array.length t.inside + List.length t.hidden) t.rim
+    (plural (List.length t.file.triangles) "triangle") (plural (Array.length (folds t.file)) "fold") t.file.digest
+
+let check_sheet t =
+  let opened = if t.corner = None then t.d.triangles else List.tl t.d.triangles in
+  if not (V.sound t.d t.p && match t.corner with None -> true | Some r -> V.closes t.d r) then
+    unverified "the sheet is not a convex triangulated one, nor one with a notch";
+  if not (V.emptied t.d opened (List.map (fun (a, b, c) -> ((a, b), c)) t.common) t.parts) then
+    unverified "the triangulated triangles are not those of the sheet"
+
+let stay_flat t = if t.parts <> [] then
+  Printf.printf "          The %s with %s inside %s flat, by theorem emptied_verified.\n"
+    (plural (List.length t.parts) "triangle") (plural (List.length t.hidden) "vertex")
+    (if List.length t.parts = 1 then "stays" else "stay")
+
+(* Whether the equations of the file are proved to be those of a motion; of many faces this takes long. *)
+let meaning t =
+  let faces = List.map (fun (a, b, c) -> ((a, b), c)) t.file.triangles in
+  let disk () =
+    let none = Array.make (Array.length t.file.points) false in
+    let whole = Proposing.drawing (fst (Proposing.closed t.file none)) none in
+    let inside = List.filter (fun v -> t.corner <> Some v) whole.inside in
+    V.moves_as_a_disk whole inside faces (Proposing.gluing { whole with inside; triangles = faces }) in
+  if List.length faces <= 1000 && disk () then
+    print_string "          Heights solve the equations if and only if they begin a motion that keeps all\n\
+      \          lengths to second order, by theorem disk_moves.\n"
+  else not_verified "that the equations are those of motions to second order"
+
+let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
+  \          closes the notch.\n" r
+
+let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
+
+let letter_of root text k = match text.[k] with
+  | 'M' -> Some false
+  | 'V' -> Some true
+  | 'U' | 'F' -> None
+  | c -> refuse "root %d has a fold with the letter %c" root c
