@@ -1,6 +1,6 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
-  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Triangles Emptied Exact
+  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Triangles Emptied Exact Flex
   Example BranchExample.
 
 Print Assumptions key_lemma.
@@ -21,6 +21,7 @@ Print Assumptions all_emptied_verified.
 Print Assumptions all_notched_emptied_verified.
 Print Assumptions exact_verified.
 Print Assumptions exact_notched_verified.
+Print Assumptions disk_moves.
 
 (** The others together. *)
 Definition others :=
@@ -31,5 +32,5 @@ Definition others :=
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
    boxed, no_star_is_flat, near_branch, near_solution, passed,
    open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
-   triangle_flat, swift_checked, the_branch).
+   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch).
 Print Assumptions others.

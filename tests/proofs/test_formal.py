@@ -50,6 +50,7 @@ ASSUMED = {
     "all_notched_emptied_verified": CLASSICAL,
     "exact_verified": CLASSICAL,
     "exact_notched_verified": CLASSICAL,
+    "disk_moves": REALS,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

@@ -15,6 +15,7 @@ from exactfold import checker
 from exactfold.branches import branch_certificate, find_branch
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.pattern.triangulating.random_squares import random_square
 
 ROOT = Path(__file__).parent.parent.parent
 SOURCES = ROOT / "proofs" / "formal" / "verify"
@@ -69,6 +70,7 @@ def test_both_checkers_agree_on_every_fixture(verifier: Path) -> None:
         if code == 0:
             accepted.append(path.name)
             assert claims["sha256"] in text
+            assert "by theorem disk_moves" in text
             if path in COMPACT:
                 assert f"exactly {claims['distinct']} branches" in text
         else:
@@ -362,6 +364,22 @@ def test_one_branch_with_triangulated_triangles(verifier: Path, tmp_path: Path) 
         assert code in (1, 3), said
         assert said in text, (said, text)
         assert valid(path) is None or value is twice, said
+
+
+@pytest.mark.slow
+def test_what_the_equations_of_many_faces_mean_is_not_verified(
+    verifier: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "branch.json"
+    for inside, verified in ((499, True), (500, False)):
+        sheet = random_square(inside, seed=1)
+        assert (len(sheet.triangles) <= 1000) == verified
+        found = branch_certificate(find_branch(sheet, up=()))
+        path.write_text(json.dumps(found), encoding="utf-8")
+        code, text = run(verifier, path)
+        assert code == 0
+        assert ("by theorem disk_moves" in text) == verified
+        assert ("not verified here: that the equations are those of motions" in text) != verified
 
 
 @pytest.mark.slow

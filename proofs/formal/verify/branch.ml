@@ -46,6 +46,7 @@ let near_branch t claimed h text zeros =
     (if corner = None then "one_verified" else "one_notched_verified");
   Option.iter raised corner;
   stay_flat t;
+  meaning t;
   if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
   if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
   not_verified "the squared distance"
@@ -76,6 +77,7 @@ let exact_branch t claimed h text distance =
     (if corner = None then "exact_verified" else "exact_notched_verified");
   Option.iter raised corner;
   stay_flat t;
+  meaning t;
   if corner <> None then not_verified "the squared distance"
 
 let one_branch data =

@@ -177,6 +177,7 @@ let all_branches header blocks claims =
     | Some _, _ -> "all_notched_emptied_verified");
   Option.iter raised corner;
   stay_flat t;
+  meaning t;
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
   if t.parts <> [] then not_verified "the multiplicity of each branch";
   if corner <> None then not_verified "that the chart of the file names this side of each branch";

@@ -99,6 +99,34 @@ let drawing sheet hidden : V.drawing =
   { points = Array.to_list sheet.points; inside = List.rev inside; border = pinned sheet cycle;
     triangles = List.map (fun (a, b, c) -> ((a, b), c)) sheet.triangles; fans_of = Array.to_list fans }
 
+(* An order in which the faces can be glued to each other, the last one first: each closes the star of its first
+   vertex, or it has a side in common with those before and a third vertex that is new. *)
+let gluing (d : V.drawing) =
+  let size = List.length d.points in
+  let placed = Array.make size false and inner = Array.make size false and left = Array.make size 0 in
+  let sides = Hashtbl.create 256 in
+  let side a b = Hashtbl.mem sides (a, b) || Hashtbl.mem sides (b, a) in
+  List.iter (fun v -> inner.(v) <- true) d.inside;
+  List.iter (fun ((a, b), c) -> List.iter (fun v -> left.(v) <- left.(v) + 1) [ a; b; c ]) d.triangles;
+  let turns ((a, b), c) = [ (a, b, c); (b, c, a); (c, a, b) ] in
+  let closes (a, b, c) = inner.(a) && left.(a) = 1 && side a b && side a c in
+  let extends (a, b, c) = side a b && not placed.(c) in
+  let place (a, b, c) =
+    List.iter (fun v -> placed.(v) <- true; left.(v) <- left.(v) - 1) [ a; b; c ];
+    List.iter (fun e -> Hashtbl.replace sides e ()) [ (a, b); (b, c); (c, a) ] in
+  let rec glue order faces =
+    let try_one (order, rest) face =
+      let found test = List.find_opt test (turns face) in
+      match found closes, found extends with
+      | Some (a, b, c), _ -> place (a, b, c); ((true, ((a, b), c)) :: order, rest)
+      | None, Some (a, b, c) -> place (a, b, c); ((false, ((a, b), c)) :: order, rest)
+      | None, None -> (order, face :: rest) in
+    let longer, rest = List.fold_left try_one (order, []) faces in
+    if rest = [] || List.compare_lengths rest faces = 0 then longer else glue longer (List.rev rest) in
+  match d.triangles with
+  | ((a, b), c) :: faces -> place (a, b, c); glue [ (false, ((a, b), c)) ] faces
+  | [] -> []
+
 (* --- its forms --- *)
 
 let two = Z.of_int 2
