@@ -3,6 +3,7 @@
 import importlib
 import importlib.metadata
 import inspect
+import pkgutil
 import subprocess
 import sys
 from pathlib import Path
@@ -109,6 +110,16 @@ def test_a_name_that_is_nowhere_is_missing(package, name):
     with pytest.raises(AttributeError) as caught:
         getattr(importlib.import_module(package), name)
     assert str(caught.value) == f"module {package!r} has no attribute {name!r}"
+
+
+def test_every_module_is_imported():
+    """On each Python, and with each set of packages that is supported (`.ci/matrix`)."""
+    found = {module.name for module in pkgutil.walk_packages(exactfold.__path__, "exactfold.")}
+    assert {"exactfold.checker.command", "exactfold.app.cli", "exactfold.errors"} <= found
+    assert len(found) > 800
+    for name in found:
+        if not name.endswith("__main__"):
+            importlib.import_module(name)
 
 
 def test_rooms_need_not_be_imported():

@@ -133,18 +133,23 @@ def _checked(given: Input) -> str | None:
     if claims is None:
         return None
     truth = _truth(given.origin)
-    if any(claims.get(key) != truth.get(key) for key in _QUESTIONS):
+    if _asked(claims) != _asked(truth):
         return None
     other = [key for key in truth.keys() | claims.keys() if not _follows(key, claims, truth)]
     said = "; ".join(f"{key!a}: {truth.get(key)!a} -> {claims.get(key)!a}"[:400] for key in other)
     return f"VALID with other claims, {' '.join(sorted(other))}: {said}" if other else None
 
 
-_QUESTIONS = ("sha256", "letters", "direction")
-"""A proof about another sheet, say, is another proof, and may be right."""
-_AT_LEAST = ("margin",)
-_AT_MOST = ("squared_distance",)
+_QUESTIONS = ("sha256", "letters", "direction", "vertex", "relations", "drivers", "rates")
+"""What a proof is about: that of another sheet, say, is another proof, and may be right."""
+_AT_LEAST = ("margin", "length", "clear", "radius")
+_AT_MOST = ("squared_distance", "within", "bound")
 _WITHIN = ("time",)
+
+
+def _asked(claims: dict[str, Any]) -> list[Any]:
+    """The sheet and what was asked about it."""
+    return [*map(claims.get, _QUESTIONS), claims.get("stop", {}).get("angles")]
 
 
 def _follows(key: str, claims: dict[str, Any], truth: dict[str, Any]) -> bool:

@@ -108,7 +108,11 @@ def test_other_claims_that_are_valid_are_defects(
     ("key", "claim", "true", "less"),
     [
         ("length", "1/3", "2/6", True),
-        ("length", "1/4", "1/3", False),
+        ("length", "1/4", "1/3", True),
+        ("length", "1/2", "1/3", False),
+        ("limit", "1/4", "1/3", False),
+        ("bound", "1/4", "1/3", False),
+        ("bound", "1/2", "1/3", True),
         ("squared_distance", "2", "1", True),
         ("squared_distance", "1/2", "1", False),
         ("contact", {"time": ["0", "3"]}, {"time": ["1", "2"]}, True),
@@ -124,6 +128,13 @@ def test_other_claims_that_are_valid_are_defects(
 )
 def test_which_claims_say_less(key: str, claim: Any, true: Any, less: bool) -> None:
     assert fuzz._follows(key, {key: claim}, {key: true}) == less
+
+
+def test_another_question_is_another_proof() -> None:
+    claims = {"sha256": "a", "stop": {"angles": [[2, 3, "80"]], "fold": [2, 3]}}
+    assert fuzz._asked(claims) == fuzz._asked({**claims, "margin": 1})
+    assert fuzz._asked(claims) != fuzz._asked({**claims, "sha256": "b"})
+    assert fuzz._asked(claims) != fuzz._asked({**claims, "stop": {"angles": []}})
 
 
 def test_the_two_checkers_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:

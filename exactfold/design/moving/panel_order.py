@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import Literal, TypeAlias
 
 import numpy as np
 
 from exactfold._support.arrays import FloatArray
-from exactfold._support.clock import Clock
 from exactfold._support.plurals import counted
-from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.design.moving.descent import Attempt, descended
 from exactfold.design.moving.panel_margin import Climb, proved_margin
 from exactfold.design.moving.places import Places, symmetries_of
 from exactfold.design.moving.rational_sheet import nearest_sheet, rational_sheets
 from exactfold.design.moving.result import Designed
+from exactfold.design.moving.search import Freedom
 from exactfold.design.moving.slopes import Equations, Slopes
 from exactfold.design.panels.match import PanelMatch, match_panels
 from exactfold.design.refutations.asked import by_fold
@@ -26,8 +24,6 @@ from exactfold.errors import NotCountedError, UsageError
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opened import panels
 from exactfold.pattern.panel_pattern import Edge, EnclosedPattern, PanelPattern
-
-Border: TypeAlias = Literal["along", "free"]
 
 _STARTS = 4
 """So many starting points are tried: the given places, and others, with letters that close there
@@ -48,16 +44,12 @@ _PULL = 0.1
 def designed_panels(
     pattern: PanelPattern,
     letters: Mapping[Edge, str],
-    within: Fraction | None,
-    fixed: Collection[int],
-    symmetric: bool,
-    border: Border,
+    freedom: Freedom,
+    *,
     with_margin: bool,
-    clock: Clock,
-    progress: Progress | None,
 ) -> Designed:
     """The sheet of panels that `designed` finds for letters, and then for the margin of torques."""
-    search = _PanelSearch(pattern, letters, within, fixed, symmetric, border, clock, progress)
+    search = _PanelSearch(pattern, letters, freedom)
     found = search.found()
     return search.with_margin(found) if with_margin and found.status is PROVED else found
 
@@ -66,15 +58,7 @@ class _PanelSearch:
     """The work of one call of `designed_panels`."""
 
     def __init__(
-        self,
-        pattern: PanelPattern,
-        letters: Mapping[Edge, str],
-        within: Fraction | None,
-        fixed: Collection[int],
-        symmetric: bool,
-        border: Border,
-        clock: Clock,
-        progress: Progress | None,
+        self, pattern: PanelPattern, letters: Mapping[Edge, str], freedom: Freedom
     ) -> None:
         pattern.check_disk("`design`")
         if isinstance(pattern, EnclosedPattern):
@@ -87,18 +71,20 @@ class _PanelSearch:
                 f"the sheet has {len(pattern.folds)} folds, and vertices are moved on sheets of "
                 f"panels with at most {_MOST_FOLDS}"
             )
-        self.pattern, self.clock, self.progress = pattern, clock, progress
+        self.pattern, self.clock, self.progress = pattern, freedom.clock, freedom.progress
         self.letters = by_fold(pattern.folds, letters)
         if not {"M", "V"} & set(self.letters.values()):
             raise UsageError("no fold has the letter M or V: give one at least")
-        symmetries = symmetries_of(pattern, self.letters) if symmetric else []
+        symmetries = symmetries_of(pattern, self.letters) if freedom.symmetric else []
         if len(symmetries) == 1:
             raise UsageError(
                 "no rotation or reflection keeps the sheet and its letters, or turns all of them: "
                 "ask for no symmetries"
             )
-        self.places = Places(pattern, fixed, symmetries, free_border=border == "free")
+        free = freedom.border == "free"
+        self.places = Places(pattern, freedom.fixed, symmetries, free_border=free)
         self.slopes = Slopes(self.places, self.letters)
+        within = freedom.within
         self.within = Fraction(self.places.width) / 10 if within is None else within
         self.interrupted = False
         self.steps = 0

@@ -79,7 +79,8 @@ def _junctions(places: FloatArray, lines: Sequence[Line], within: float) -> Junc
     members = members[np.argsort(places[members, 0], kind="stable")]
     spots = places[members]
     junctions: Junctions = {}
-    ends = places[[line[:2] for line in lines]][:, :, 0].reshape(-1, 2)
+    pairs = np.array([line[:2] for line in lines], dtype=np.intp).reshape(-1, 2)
+    ends = places[pairs][:, :, 0]
     check_pairs(spots[:, 0], ends.min(axis=1, initial=np.inf), ends.max(axis=1, initial=-np.inf))
     for k, (a, b, _) in enumerate(lines):
         chord = places[b] - places[a]

@@ -13,7 +13,7 @@ import exactfold
 from exactfold._support.clock import Clock
 from exactfold.branches import count_branches, find_branch
 from exactfold.design import actuate, designed, match
-from exactfold.design.moving import order, stroke
+from exactfold.design.moving import search, stroke
 from exactfold.design.moving.ascent import raised
 from exactfold.design.moving.distances import face_distances, fold_distances
 from exactfold.design.tolerance.parts import branch_part
@@ -144,7 +144,7 @@ def test_an_interruption_keeps_the_best_sheet(monkeypatch):
             if len(calls) == 3:
                 raise KeyboardInterrupt
 
-    monkeypatch.setattr(order, "raised", interrupted)
+    monkeypatch.setattr(search, "raised", interrupted)
     found = designed(exactfold.random_square(3, seed=1), maximise="tolerance")
     assert found.interrupted
     assert found.status is exactfold.PROVED
