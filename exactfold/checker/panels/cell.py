@@ -155,14 +155,19 @@ def check(data: dict[str, Any]) -> PanelCellClaims:
             found += [motion] * len(components(spaces, leaf, leaves))
     facts: PanelCellClaims = {
         "folds": len(sheet.sides),
-        "motions": sorted(found, key=str),
+        "motions": sorted(found, key=_in_order),
         "sha256": cell.sha256(),
     }
-    given = {**claims, "motions": sorted(items(claims["motions"], "motions"), key=str)}
+    given = {**claims, "motions": sorted(items(claims["motions"], "motions"), key=_in_order)}
     for key, fact in facts.items():
         require(same(given[key], fact), f"the claim {key!r} is not what the pattern shows")
     proved: PanelCellClaims = claims
     return proved
+
+
+def _in_order(motion: Any) -> str:
+    """A text to sort motions by, which does not depend on the order of their keys."""
+    return str(sorted(motion.items()) if isinstance(motion, dict) else motion)
 
 
 def _motion(spaces: Spaces, sheet: CellSheet, basis: Space, dimension: int) -> CellMotionClaim:

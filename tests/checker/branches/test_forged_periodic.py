@@ -11,6 +11,7 @@ from forge import Document, beyond, given, refused, stopped, verified, with_one_
 
 from exactfold.branches.periodic.certificate import periodic_certificate
 from exactfold.branches.periodic.counting import count_periodic
+from exactfold.branches.periodic.lines import times
 from exactfold.checker.branches import periodic, periodic_proof
 from exactfold.checker.core.limits import PERIODIC_VERTICES
 from exactfold.pattern.periodic.cell_files import parse_cell
@@ -294,10 +295,12 @@ def test_a_line_that_is_listed_twice_would_be_two_pleats(
 
 
 def test_a_line_with_another_factor_is_not_the_listed_one() -> None:
-    document = periodic_file("line")
-    scaled = [[str(2 * Fraction(x)) for x in pair] for pair in lines(document)[0]["point"]]
-    lines(document)[0] = {"radicand": 5, "point": scaled}
-    false(document, "the first entry of a line that is not 0 is not 1")
+    for factor in ((Fraction(2), Fraction(0)), (Fraction(1), Fraction(1))):  # 2, and 1 + sqrt 5
+        document = periodic_file("line")
+        pairs = [tuple(map(Fraction, pair)) for pair in lines(document)[0]["point"]]
+        scaled = [[str(x) for x in times(pair, factor, 5)] for pair in pairs]
+        lines(document)[0] = {"radicand": 5, "point": scaled}
+        false(document, "the first entry of a line that is not 0 is not 1")
 
 
 def test_a_line_that_is_no_solution() -> None:
@@ -327,6 +330,7 @@ def test_what_a_line_is() -> None:
     for change, message in (
         (lambda d: lines(d)[0]["point"].pop(), "point does not have 4 entries"),
         (lambda d: lines(d)[0]["point"][1].pop(), "number does not have 2 entries"),
+        (lambda d: lines(d)[0].update(radicand=-5), "radicand is not a natural number"),
         (lambda d: lines(d)[0].update(more=1), "line: expected an object with the keys"),
         (lambda d: d.update(version=1), "expected an object with the keys"),
         (lambda d: d["claims"].pop("lines"), "expected an object with the keys"),

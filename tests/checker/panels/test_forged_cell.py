@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -49,6 +51,16 @@ def test_other_cells(
     assert f"{number} component" in checker.summary(checker.check(document))
 
 
+def test_a_sheet_that_rolls_up_across_the_first_axis() -> None:
+    """Miura's cell with both coordinates exchanged."""
+    miura = read_cell("miura-cell")
+    lattice, points = ([(y, x) for x, y in some] for some in (miura.lattice, miura.points))
+    faces = [tuple(reversed(face)) for face in miura.faces]
+    result = count_panel_cell(PeriodicPattern(lattice, points, faces, miura.diagonals))
+    motions = verified(panel_cell_certificate(result))["motions"]
+    assert [motion["direction"] for motion in motions] == [[1, 0], None]
+
+
 def test_what_is_undecided_has_no_certificate() -> None:
     with pytest.raises(NotApplicableError, match="not all known"):
         panel_cell_certificate(count_panel_cell("waterbomb-cell"))
@@ -77,6 +89,13 @@ def test_a_diagonal_that_is_no_edge_would_fold() -> None:
     document["pattern"]["diagonals"][0] = [v, u, -i, -j]
     false(document, f"the diagonal {(v, u, -i, -j)} is no edge")
     assert document["claims"]["folds"] == 9
+
+
+def test_the_order_of_keys_and_motions_is_free() -> None:
+    document = panel_file("yoshimura")
+    known = verified(document)["motions"]
+    document["claims"]["motions"].reverse()
+    assert verified(json.loads(json.dumps(document, sort_keys=True)))["motions"] == known[::-1]
 
 
 @pytest.mark.parametrize(
@@ -109,7 +128,31 @@ def test_other_claims() -> None:
         stopped(document, "the claim 'motions' is not what the pattern shows")
 
 
-@pytest.mark.parametrize("place", [("claims",), ("pattern",)])
-def test_unknown_keys(place: tuple[str | int, ...]) -> None:
-    with pytest.raises(Exception, match="expected an object with the keys"):
-        verified(with_one_key_more(panel_file("miura"), place))
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d["pattern"].update(diagonals={}), "diagonals is not a list"),
+        (lambda d: d["pattern"]["diagonals"][0].append(0), "a diagonal does not have 4 entries"),
+        (lambda d: d["claims"].update(motions={}), "motions is not a list"),
+    ],
+)
+def test_other_shapes(change: Callable[[Document], None], message: str) -> None:
+    document = panel_file("square-twist")
+    change(document)
+    refused(document, message)
+
+
+def test_false_is_no_vertex() -> None:
+    document = panel_file("square-twist")
+    diagonal = document["pattern"]["diagonals"][0]
+    diagonal[diagonal.index(0)] = False
+    refused(document, "False is not an integer")
+
+
+@pytest.mark.parametrize(
+    ("place", "names"),
+    [("claims", "folds motions sha256"), ("pattern", "lattice vertices faces diagonals")],
+)
+def test_unknown_keys(place: str, names: str) -> None:
+    document = with_one_key_more(panel_file("miura"), (place,))
+    refused(document, f"{place}: expected an object with the keys {names}")
