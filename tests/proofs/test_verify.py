@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from compact_files import Lines, bodies, chained, chained_texts, listed_exactly, put, raw
+from compare_checkers import compare, mutate
 
 from exactfold import checker
 from exactfold.branches import branch_certificate, find_branch
@@ -135,6 +136,7 @@ def compact_forgeries() -> dict[str, Callable[[Lines], object]]:
         "block 0 has open roots": lambda lines: lines[1]["open"].append([0, "hard"]),
         "block 0 is expected": lambda lines: lines[1].update(block=1),
         'the key "more" is not known': lambda lines: lines[1].update(more=1),
+        "folds is not base 64": lambda lines: lines[1].update(folds=lines[1]["folds"][:-3] + "=AA"),
         "width is out of range": lambda lines: lines[1].update(width=0),
         "bits is out of range": lambda lines: lines[1].update(bits=53),
         "a bit of no fold is set": padding,
@@ -297,6 +299,7 @@ def triangle_forgeries() -> dict[str, Callable[[Lines], object]]:
         'the key "more" is not known': lambda lines: lines[0]["evidence"]["triangles"][0].update(
             more=1
         ),
+        "a multiplier is no whole number": triangle("multipliers", lambda m: m.append("1/")),
         "NOT VERIFIED  root 3 did not pass the test": letters,
         'the claim "distinct" is 64': lambda lines: lines[-1]["claims"].update(distinct=64),
         'the claim "with_multiplicity" is 8': lambda lines: lines[-1]["claims"].update(
@@ -487,6 +490,8 @@ def test_forged_certificates_of_one_branch_are_refused(verifier: Path, tmp_path:
         ("claims", "gauge", "either"),
         ("evidence", "denominator", "-1"),
         ("evidence", "denominator", "one"),
+        ("evidence", "denominator", int(given["evidence"]["denominator"])),
+        ("claims", "squared_distance", "1/2/3"),
         ("evidence", "heights", negated),
         ("claims", "assignment", other[:1] + letters[1:]),
         ("claims", "assignment", letters[1:]),
@@ -581,6 +586,14 @@ def test_two_thousand_changed_letters_and_heights(
 ) -> None:
     check_mutations(verifier, CONVEX, tmp_path / "changed.txt", 2000, seed=2)
     check_mutations(verifier, notch, tmp_path / "changed.txt", 2000, seed=4)
+
+
+@pytest.mark.slow
+def test_both_checkers_agree_on_changed_certificates(verifier: Path, tmp_path: Path) -> None:
+    mutate(tmp_path, 100, seed=3)
+    paths = sorted(tmp_path.iterdir())
+    assert len(paths) > 80
+    assert compare(verifier, paths) == 0
 
 
 @pytest.mark.slow

@@ -67,7 +67,7 @@ let exact_branch t claimed h text distance =
   if not (match corner with
     | None -> V.verify_exact d p kept sign given letters
     | Some r -> V.verify_exact_notched d p r sign given letters) then unverified "the branch did not pass the test";
-  if corner = None && Z.lt (fst (rational "the squared distance" distance)) Z.zero then
+  if corner = None && Z.lt (fst distance) Z.zero then
     invalid "the squared distance is 0, which is more than claimed";
   Printf.printf "VERIFIED  exactly one %s has these signs, 0 where a vertex is flat.\n\
     \          Its heights are %sthose of the file, and it has all letters of the file,\n\
@@ -87,7 +87,7 @@ let one_branch data =
   only "emptied heights denominator" evidence;
   let file = sheet (entry "pattern" data) in
   let triangles = items "emptied" (entry "emptied" evidence) in
-  let t = place_of file (List.map (triangulated file "") triangles) in
+  let t = place_of file (List.map (triangulated file false) triangles) in
   let { d; p; corner; inside; _ } = t in
   shown_sheet t;
   check_sheet t;
@@ -132,9 +132,10 @@ let one_branch data =
   let own = Array.of_list p.V.folds in
   let text = String.init (Array.length own) (fun k ->
     let ((i, j), _), _ = own.(k).V.ends in text.[Hashtbl.find places (i, j)]) in
+  let distance = rational "the squared distance" (entry "squared_distance" claims) in
   let exact (b : V.hub) = corner = Some b.at_vertex
     || Z.equal Z.zero (fst (V.measured (fun u -> h.(u)) h.(b.at_vertex) b.wedges)) in
-  if List.for_all exact p.V.hubs then exact_branch t claimed h text (entry "squared_distance" claims)
+  if List.for_all exact p.V.hubs then exact_branch t claimed h text distance
   else begin
     let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) (- List.length t.hidden) signs in
     near_branch t claimed h text zeros

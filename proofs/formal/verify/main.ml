@@ -79,7 +79,7 @@ let all_branches header blocks claims =
   if string "kind" (entry "kind" evidence) <> "chambers" then refuse "unknown kind of evidence";
   let file = sheet (entry "pattern" header) in
   let triangles = items "triangles" (entry "triangles" evidence) in
-  let t = place_of file (List.map (triangulated file " multipliers") triangles) in
+  let t = place_of file (List.map (triangulated file true) triangles) in
   let { d; p; corner; inside; _ } = t in
   let size = Array.length inside in
   if t.rim <> 4 then refuse "the sheet has %d boundary vertices, not four" t.rim;

@@ -78,7 +78,7 @@ let digits what t =
     && (t.[first] <> '0' || t = "0") in
   if good then Z.of_string t else refuse "%s is no whole number" what
 
-let whole what = function Text t | Number t -> digits what t | _ -> refuse "%s is no whole number" what
+let whole what = function Text t -> digits what t | _ -> refuse "%s is no whole number" what
 
 (* A number that stands without quotes, between two limits. *)
 let small ?(least = 0) ?(most = max_int / 4) what = function
@@ -138,7 +138,7 @@ let folds sheet =
 let decoded what text =
   let size = String.length text in
   if size mod 4 <> 0 then refuse "%s is not base 64" what;
-  let padding = if size > 1 && text.[size - 2] = '=' then 2 else if size > 0 && text.[size - 1] = '=' then 1 else 0 in
+  let padding = if size = 0 || text.[size - 1] <> '=' then 0 else if text.[size - 2] = '=' then 2 else 1 in
   let digit c = match c with
     | 'A' .. 'Z' -> Char.code c - 65 | 'a' .. 'z' -> Char.code c - 71 | '0' .. '9' -> Char.code c + 4
     | '+' -> 62 | '/' -> 63 | _ -> refuse "%s is not base 64" what in

@@ -17,8 +17,11 @@ type place = {
   common : (int * int * int) list; parts : V.part list; inside : int array; rim : int
 }
 
-let triangulated sheet more j =
-  only ("corners inside" ^ more) j;
+(* A triangle of the file; the multipliers of a file of all branches are not needed for the proof. *)
+let triangulated sheet multipliers j =
+  only (if multipliers then "corners inside multipliers" else "corners inside") j;
+  let one j = ignore (rational "a multiplier" j) in
+  if multipliers then List.iter one (items "multipliers" (entry "multipliers" j));
   let vertex j = small ~most:(Array.length sheet.points - 1) "a vertex of a triangle" j in
   match List.map vertex (items "corners" (entry "corners" j)), items "inside" (entry "inside" j) with
   | [ a; b; c ], inside -> ((a, b, c), List.map vertex inside)

@@ -2,17 +2,20 @@
 
 from dataclasses import replace
 from itertools import permutations
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import with_point
 
+from exactfold._support.clock import Clock
 from exactfold.errors import NotApplicableError
-from exactfold.pattern import families
+from exactfold.pattern import families, random_cell
 from exactfold.pattern.crease_pattern import CreasePattern
+from exactfold.rigidity.equations.all_directions import AllDirections
 from exactfold.rigidity.equations.branch_system import BranchSystem
-from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_matrices
 from exactfold.solve.algebraic import lifting
 from exactfold.solve.algebraic.groebner_bases import groebner
 
@@ -226,3 +229,40 @@ def test_special_coefficients_of_the_deflation_are_replaced(monkeypatch):
     monkeypatch.setattr(lifting.Deflation, "of", special)
     assert lifting.lifted_classes(chart_system(FLAT_STAR)) is not None
     assert [seed for corank, seed in seeds if corank] == [0, 1, 2]
+
+
+def test_a_zero_that_is_more_than_a_power_of_its_corank_stops_early(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Stars that go flat together: a zero of multiplicity 16, and four of 4.
+
+    Without the test of the residues, Newton's method goes on to a million bits.
+    """
+    cell = random_cell(6, 1629, 64, flips=6)
+    star = AllDirections.of(cell).flat_star(1)
+    assert star is not None
+    system = QuadraticSystem(primitive_matrices(star.forms))
+    steps: list[int] = []
+
+    def seen(ring: Any, values: Any, form: Any, power: int) -> None:
+        steps.append(power)
+
+    monkeypatch.setattr(lifting, "_reconstructed", seen)
+    monkeypatch.setattr(lifting, "_precision_limit", lambda system: 4000)
+    assert lifting.lifted_classes(system) is None
+    assert not steps
+
+
+def test_a_limit_of_time() -> None:
+    """All squares are equal: the fast engines do not apply, and no other begins under a limit."""
+    size = 6
+    matrices = []
+    for k in range(size):
+        matrix = [[0] * (size + 1) for _ in range(size + 1)]
+        matrix[k][k], matrix[(k + 1) % size][(k + 1) % size] = 1, -1
+        matrices.append(matrix)
+    system = QuadraticSystem.from_rational(matrices)
+    with pytest.raises(NotApplicableError, match=r"time limit of 0 seconds"):
+        groebner(system, clock=Clock(0))
+    with pytest.raises(NotApplicableError, match="is not begun under a limit of time"):
+        groebner(system, clock=Clock(60))
