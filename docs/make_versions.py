@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import html
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -42,9 +43,11 @@ def build(repository: Path, revision: str, site: Path) -> None:
         archive = ["git", "-C", str(repository), "archive", "--format=tar", revision]
         content = subprocess.run(archive, capture_output=True, check=True).stdout
         subprocess.run(["tar", "-x", "-C", place], input=content, check=True)
-        target = site / folder(revision)
-        sphinx = [sys.executable, "-m", "sphinx", "-q", "-b", "html", "docs", str(target.resolve())]
+        sphinx = [sys.executable, "-m", "sphinx", "-q", "-b", "html", "docs", "site/html"]
         subprocess.run(sphinx, cwd=place, env={**os.environ, "PYTHONPATH": place}, check=True)
+        target = site / folder(revision)
+        shutil.rmtree(target, ignore_errors=True)
+        shutil.copytree(Path(place, "site", "html"), target)
 
 
 def link(site: Path, versions: list[str]) -> None:
