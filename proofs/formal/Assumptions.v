@@ -14,6 +14,7 @@ Print Assumptions certified.
 Print Assumptions counted.
 Print Assumptions all_verified.
 Print Assumptions one_verified.
+Print Assumptions distance_verified.
 Print Assumptions all_notched_verified.
 Print Assumptions one_notched_verified.
 Print Assumptions chart_verified.

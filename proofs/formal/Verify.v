@@ -52,6 +52,45 @@ Proof.
   exists ok. now apply H.
 Qed.
 
+(** The energy of the difference from the heights, times [below], is at most [top]. *)
+Definition within (p : prepared) (up : nat -> bool) (h : zheights) (top below : Z) : bool :=
+  match distance_of (fun _ => false) up h (hubs p) with
+  | Some far => (0 <=? below)%Z && (far * below <=? top * units p)%Z
+  | None => false
+  end.
+
+Theorem distance_verified d p up h top below (ok : check d = true) : sound d p = true ->
+  within p up h top below = true -> let S := sheet_of d ok in
+  forall g, has_rim S (reals h) g -> solves S (fun _ => 0) g -> in_nappes S up g ->
+    IZR below * energy S (minus g (reals h)) <= IZR top.
+Proof.
+  unfold sound, within. cbv zeta. rewrite andb_true_iff. intros (_ & Ok).
+  destruct (distance_of _ up h (hubs p)) as [far|] eqn:D; [|discriminate].
+  rewrite andb_true_iff, !Z.leb_le. intros (Pb & Le). apply IZR_le in Pb, Le. rewrite !mult_IZR in Le.
+  set (S := sheet_of d ok). intros g Gr Gs Gn.
+  assert (At : look (places d) (0, 0)%Z = place d) by exact (table_nth _ _).
+  assert (Fan : look (fans_table d) [] = fun v => nth v (fans_of d) []) by exact (table_nth _ _).
+  destruct (distance_means d p _ _ _ _ ok At Fan (fun _ => false) up h far Ok D) as (Vs & Far).
+  unfold prepared_ok in Ok. rewrite !andb_true_iff, !forallb_forall in Ok. destruct Ok as ((_ & Pu) & Ws).
+  apply Z.ltb_lt, IZR_lt in Pu. rewrite At in *.
+  set (c := (IZR (fst (centre2 p)) / 2, IZR (snd (centre2 p)) / 2) : point).
+  assert (Weight : forall v, multiplier S c (IZR (radius4 p) / 4) v = IZR (multiplier4 p (place d) v) / 4).
+  { intros v. unfold multiplier, multiplier4, c, dot, sub. cbn [fst snd at_ sheet_of S]. unfold at_R. cbn [fst snd].
+    repeat rewrite ?plus_IZR, ?minus_IZR, ?mult_IZR, ?opp_IZR. field. }
+  destruct (near_solution S up (fun _ => false) (reals h) c (IZR (radius4 p) / 4) (IZR far / IZR (units p)) [])
+    as (g' & _ & _ & _ & _ & U & En & _).
+  - intros v Hv. now apply Vs.
+  - intros v Hv. rewrite Weight. specialize (Ws v Hv). apply Z.leb_le, IZR_le in Ws. lra.
+  - rewrite (sum_ext _ _ (fun v => / 4 * (IZR (multiplier4 p (place d) v) * K S v (reals h)))).
+    + rewrite sum_scal. unfold Rdiv in *. change (inner S) with (inside d). fold S in Far. lra.
+    + intros v _. rewrite Weight. field.
+  - easy.
+  - rewrite (U g Gr Gs Gn). eapply Rle_trans; [apply Rmult_le_compat_l; [exact Pb|exact En]|].
+    apply (Rmult_le_reg_r (IZR (units p))); [assumption|].
+    replace (IZR below * (IZR far / IZR (units p)) * IZR (units p)) with (IZR far * IZR below) by (field; lra).
+    exact Le.
+Qed.
+
 (** ** Multiples of heights *)
 
 Definition scaled_up (s : R) (h : vec) : vec := move zero s h.

@@ -43,6 +43,7 @@ ASSUMED = {
     "counted": CLASSICAL,
     "all_verified": CLASSICAL,
     "one_verified": CLASSICAL,
+    "distance_verified": CLASSICAL,
     "all_notched_verified": CLASSICAL,
     "one_notched_verified": CLASSICAL,
     "chart_verified": REALS | {"ClassicalDedekindReals.sig_not_dec"},

@@ -533,6 +533,32 @@ def test_forged_certificates_of_one_branch_are_refused(verifier: Path, tmp_path:
 
 
 @pytest.mark.slow
+def test_the_squared_distance_is_verified_or_said_not_to_be(verifier: Path, tmp_path: Path) -> None:
+    given = json.loads(RANDOM.read_text(encoding="utf-8"))
+    claimed = Fraction(given["claims"]["squared_distance"])
+    denominator = int(given["evidence"]["denominator"])
+    path = tmp_path / "branch.json"
+
+    def verified(distance: Fraction, denominator: int) -> bool:
+        """Whether the program verifies the distance, too; it says which it does."""
+        claims = given["claims"] | {"squared_distance": str(distance)}
+        evidence = given["evidence"] | {"denominator": str(denominator)}
+        path.write_text(json.dumps(given | {"claims": claims, "evidence": evidence}))
+        code, text = run(verifier, path)
+        assert code == 0
+        proved = "the squared distance of the file, by theorem distance_verified" in text
+        assert ("not verified here: the squared distance" in text) != proved
+        assert (valid(path) is not None) == proved
+        return proved
+
+    assert verified(claimed, denominator)
+    assert not verified(claimed * Fraction(2**20 - 1, 2**20), denominator)
+    assert not verified(claimed, denominator // 2)
+    assert verified(claimed / 4, denominator * 2)
+    assert not verified(-claimed, denominator)
+
+
+@pytest.mark.slow
 def test_the_gauge_saddle_is_one_of_four_vertices_with_a_positive_saddle(
     verifier: Path, tmp_path: Path
 ) -> None:

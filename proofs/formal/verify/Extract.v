@@ -16,4 +16,4 @@ Extract Inlined Constant Z.eqb => "Integer.equal".
 
 Extraction "verified.ml" verify_all verify_one verify_all_notched verify_one_notched sound closes emptied passes
   raised_passes measured is_bent verify_exact verify_exact_notched exact_hub exact_fold names_side
-  weight moves_as_a_disk.
+  weight within moves_as_a_disk.

@@ -17,8 +17,9 @@ let positive_saddle sheet (a, b, c, d) h =
   let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
   Z.sign sum * (if first <> 0 then first else most) > 0
 
-(* Heights near a solution; [zeros] vertices are claimed to be flat. *)
-let near_branch t claimed h text zeros =
+(* Heights near a solution; [zeros] vertices are claimed to be flat. The squared distance of the heights as integers
+   is claimed to be at most [top] / [below]. *)
+let near_branch t claimed h text zeros (top, below) =
   let { d; p; corner; _ } = t in
   (* a vertex that is claimed to be flat lies in both closed nappes: the test is made in that of the heights *)
   let ups = Array.make (Array.length h) false in
@@ -45,11 +46,13 @@ let near_branch t claimed h text zeros =
     (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex")
     (if corner = None then "one_verified" else "one_notched_verified");
   Option.iter raised corner;
+  let near = corner = None && V.within p up given top below in
+  if near then print_string "          It has the squared distance of the file, by theorem distance_verified.\n";
   stay_flat t;
   meaning t;
   if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
   if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
-  not_verified "the squared distance"
+  if not near then not_verified "the squared distance"
 
 (* Heights that solve the equations exactly. *)
 let exact_branch t claimed h text distance =
@@ -100,7 +103,8 @@ let one_branch data =
     | _ when gone.(v) -> invalid "vertex %d lies inside a triangulated triangle and has a height" v
     | j -> whole "a height" j in
   let h = Array.mapi height given in
-  if Z.leq (whole "denominator" (entry "denominator" evidence)) Z.zero then invalid "the denominator is not positive";
+  let denominator = whole "denominator" (entry "denominator" evidence) in
+  if Z.leq denominator Z.zero then invalid "the denominator is not positive";
   let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
   let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
   let all = Array.of_list (List.sort compare (t.hidden @ Array.to_list inside)) in
@@ -138,5 +142,5 @@ let one_branch data =
   if List.for_all exact p.V.hubs then exact_branch t claimed h text distance
   else begin
     let zeros = Array.fold_left (fun n s -> if s = 0 then n + 1 else n) (- List.length t.hidden) signs in
-    near_branch t claimed h text zeros
+    near_branch t claimed h text zeros (Z.mul (fst distance) (Z.mul denominator denominator), snd distance)
   end
