@@ -1,6 +1,6 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
-  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Triangles Emptied Exact Flex
+  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact Flex
   Example BranchExample.
 
 Print Assumptions key_lemma.
@@ -16,6 +16,7 @@ Print Assumptions all_verified.
 Print Assumptions one_verified.
 Print Assumptions all_notched_verified.
 Print Assumptions one_notched_verified.
+Print Assumptions chart_verified.
 Print Assumptions emptied_verified.
 Print Assumptions all_emptied_verified.
 Print Assumptions all_notched_emptied_verified.

@@ -51,6 +51,7 @@ EXPLAINED = {
     ),
     "the program says that it does not verify signs without letters": "does not have the claimed",
     "the program does not use multipliers": "multipliers|not definite|pivot",
+    "the program reads the chart of the closed notch only": "the chart does not name the side",
     "a vertex is named twice inside a triangle": "triangulated triangles are not those of the",
 }
 """Why one may accept what the other refuses: the program proves claims by evidence of its own."""

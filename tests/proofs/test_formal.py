@@ -45,6 +45,7 @@ ASSUMED = {
     "one_verified": CLASSICAL,
     "all_notched_verified": CLASSICAL,
     "one_notched_verified": CLASSICAL,
+    "chart_verified": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "emptied_verified": REALS,
     "all_emptied_verified": CLASSICAL,
     "all_notched_emptied_verified": CLASSICAL,

@@ -52,8 +52,8 @@ let block size folds number length data =
         letters = fun k -> Some (bit index k) }
     | _ -> invalid "root %d of block %d is given twice or not at all" index number
 
-(* The chart of a sheet with a reflex corner: the height of this corner, in units of 2^-bits, over the heights of
-   the vertices inside, so that a functional of both is 1. *)
+(* The chart of a sheet with a reflex corner: the whole weights of a functional, and the height of this corner, in
+   units of 2^-bits, over the heights of the vertices inside, so that the functional is 1. *)
 let notch_chart j corner inside =
   let vertices = corner :: Array.to_list inside in
   only (String.concat " " (List.map string_of_int vertices)) j;
@@ -66,7 +66,8 @@ let notch_chart j corner inside =
     | Some w when not (Z.equal w Z.zero) -> w
     | _ -> refuse "the chart does not fix the height of the reflex corner" in
   let rest h = List.fold_left (fun s (v, w) -> if v = corner then s else Z.add s (Z.mul w h.(v))) Z.zero whole in
-  fun h bits -> Z.div (Z.sub (Z.shift_left unit bits) (rest h)) lead
+  ((fun v -> Option.value (List.assoc_opt v whole) ~default:Z.zero),
+    fun h bits -> Z.div (Z.sub (Z.shift_left unit bits) (rest h)) lead)
 
 let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
 
@@ -92,6 +93,12 @@ let all_branches header blocks claims =
   if 1 lsl size mod length <> 0 || List.length blocks <> 1 lsl size / length then refuse "the number of blocks is wrong";
   shown_sheet t;
   check_sheet t;
+  (match lifted, corner with
+  | Some (weights, _), Some r ->
+    let tilted, times = Proposing.form_of d p r weights in
+    if not (V.names_side d p r weights tilted times) then
+      unverified "the chart does not name the side on which vertex %d pops up when a triangle closes the notch" r
+  | _ -> ());
   let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
   let claim key = match entry key claims with
     | Number n -> Z.to_string (digits key n)
@@ -118,7 +125,7 @@ let all_branches header blocks claims =
     Array.iteri (fun k v -> let c = root.center.(k) in
       h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
     (match lifted, corner with
-    | Some height, Some r -> h.(r) <- height h bits
+    | Some (_, height), Some r -> h.(r) <- height h bits
     | _ -> h.(List.nth d.border 3) <- Z.shift_left Z.one bits);
     h in
   let passes e h letters = match corner with
@@ -175,18 +182,31 @@ let all_branches header blocks claims =
     | None, _ -> "all_emptied_verified"
     | Some _, [] -> "all_notched_verified"
     | Some _, _ -> "all_notched_emptied_verified");
-  Option.iter raised corner;
+  Option.iter (fun r -> raised r;
+    print_string "          The chart of the file names this side, by theorem chart_verified.\n") corner;
   stay_flat t;
   meaning t;
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
   if t.parts <> [] then not_verified "the multiplicity of each branch";
-  if corner <> None then not_verified "that the chart of the file names this side of each branch";
   not_verified "that every branch continues to a true motion"
 
 (* --- files --- *)
 
-let known format version = refuse "the file is \"%s\", version %s; only version 1 of \"exactfold compact certificate\" \
-  and of \"exactfold branch\" are verified here" format version
+let other format version why = refuse "the file is \"%s\", version %s%s; only version 1 of \"exactfold compact \
+  certificate\" and of \"exactfold branch\" are verified here" format version why
+
+(* Why a file of version 2 is outside: each vertex inside a triangulated triangle doubles the multiplicity, and what is
+   left above 1 is claimed of roots at which other stars are flat. *)
+let outside header claims =
+  let evidence = entry "evidence" header in
+  let number key = match entry key claims with Number n -> digits key n | _ -> refuse "%s is no number" key in
+  let inside = match evidence with
+    | Entries pairs when List.mem_assoc "triangles" pairs ->
+      List.concat_map (fun j -> items "inside" (entry "inside" j)) (items "triangles" (entry "triangles" evidence))
+    | _ -> [] in
+  if Z.lt (Z.shift_left (number "distinct") (List.length inside)) (number "with_multiplicity") then
+    ", which claims multiple roots, at which stars are flat: the theorem counts branches only where no star is flat"
+  else ", which has an entry for each root of any kind"
 
 let verify path =
   let text = file path in
@@ -199,20 +219,23 @@ let verify path =
     match lines text with
     | header :: (_ :: _ as rest) ->
       let header = parse header in
-      (match kind header with
-      | "exactfold compact certificate", "1" -> ()
-      | format, version -> known format version);
       let reversed = List.rev rest in
-      let claims = match parse (List.hd reversed) with
+      let claims () = match parse (List.hd reversed) with
         | Entries [ ("claims", c) ] -> c
         | _ -> invalid "the file is UNFINISHED: its last line has no claims" in
+      let claims = match kind header with
+        | "exactfold compact certificate", "1" -> claims ()
+        | ("exactfold compact certificate" as format), "2" -> other format "2" (outside header (claims ()))
+        | format, version -> other format version "" in
       all_branches header (List.rev (List.tl reversed)) claims
     | _ -> invalid "the file is UNFINISHED: it has no blocks"
   else begin
     let data = parse text in
     match kind data with
     | "exactfold branch", "1" -> Branch.one_branch data
-    | format, version -> known format version
+    | ("exactfold branch" as format), "2" -> other format "2" ", of a sheet with angle deficits"
+    | ("exactfold branch" as format), "3" -> other format "3" ", with merged faces"
+    | format, version -> other format version ""
   end
 
 let () =

@@ -190,6 +190,34 @@ let prepared sheet (d : V.drawing) : V.prepared =
     { b with share = Z.cdiv (Z.mul weight units) (Z.mul (Z.of_int 4) b.scale) } in
   { hubs = List.map shared hubs; folds = Array.to_list (Array.mapi (fold sheet) all); centre2; radius4; units }
 
+(* Heights t, and a number, so that K(t, .) at the corner [r] of a closed notch has the weights [w] times this number;
+   if there are none, others. The form does not change with a plane: t is 0 on the triangle that closes the notch. *)
+let form_of (d : V.drawing) (p : V.prepared) r w =
+  let b = List.find (fun (b : V.hub) -> b.at_vertex = r) p.hubs in
+  let closing = match d.triangles with ((x, y), z) :: _ -> [ x; y; z ] | [] -> [] in
+  let around = List.sort_uniq compare (List.concat_map (fun (w : V.wedge_form) -> [ w.left; w.right ]) b.wedges) in
+  let free = Array.of_list (List.filter (fun u -> not (List.mem u closing)) around) in
+  let n = Array.length free in
+  let at v u = if u = v then Z.one else Z.zero in
+  let row u = Array.init (n + 1) (fun k -> Q.of_bigint (if k = n then w u else V.weight b (at free.(k)) u)) in
+  let rest = ref (List.map row (r :: List.filter (fun u -> List.mem u d.inside) around)) in
+  let solved = Array.make n [||] in
+  for k = 0 to n - 1 do
+    match List.partition (fun row -> Q.sign row.(k) <> 0) !rest with
+    | [], _ -> ()
+    | first :: more, others ->
+      let first = Array.map (fun x -> Q.div x first.(k)) first in
+      let less row = let f = row.(k) in Array.map2 (fun x y -> Q.sub x (Q.mul f y)) row first in
+      rest := List.map less more @ others;
+      Array.iteri (fun j row -> if row <> [||] then solved.(j) <- less row) solved;
+      solved.(k) <- first
+  done;
+  let t = Array.map (fun row -> if row = [||] then Q.zero else row.(n)) solved in
+  let times = Array.fold_left (fun m x -> Z.lcm m (Q.den x)) Z.one t in
+  let heights = Hashtbl.create 8 in
+  Array.iteri (fun k x -> Hashtbl.replace heights free.(k) (Q.num (Q.mul (Q.of_bigint times) x))) t;
+  ((fun u -> Option.value (Hashtbl.find_opt heights u) ~default:Z.zero), times)
+
 (* --- heights with small positive curvatures near a root --- *)
 
 let ratio p q =
