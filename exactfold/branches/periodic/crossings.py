@@ -27,7 +27,7 @@ from exactfold.rigidity.equations.all_directions import AllDirections, FlatStar
 from exactfold.rigidity.equations.periodic import Row
 from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_matrices
 from exactfold.solve.algebraic.exact_solution import RootClass
-from exactfold.solve.algebraic.groebner_bases import classes_of_ideal, groebner
+from exactfold.solve.algebraic.groebner_bases import UNDER_LIMIT, classes_of_ideal, groebner
 from exactfold.solve.algebraic.no_zeros import only_zero, roots_modulo
 from exactfold.solve.algebraic.quotient import sparse_quadrics
 
@@ -138,14 +138,19 @@ class Crossings:
             solved = not any(form[0][0] for form in forms)
             return (RootClass((0, 1), (), 1, ()),) if solved else ()
         matrices = primitive_matrices(forms)
-        if len(forms) > size and any(only_zero([], matrices, p) for p, _ in _some_primes((0, 1))):
-            return ()
+        for prime, _ in _some_primes((0, 1)) if len(forms) > size else ():
+            if only_zero([], matrices, prime, self.clock):
+                return ()
+            if self.clock.passed:
+                raise OpenVertexError(self.clock.said)
         if size > MOST_UNKNOWNS:
             raise OpenVertexError(
                 f"{size} unknowns are too many, at most {MOST_UNKNOWNS} are solved"
             )
         if self.clock.passed:
             raise OpenVertexError(self.clock.said)
+        if len(forms) != size > UNDER_LIMIT and self.clock.limit is not None:
+            raise OpenVertexError(f"{size} unknowns are too many under a limit of time")
         system = QuadraticSystem(matrices)
         if len(forms) == size:
             try:

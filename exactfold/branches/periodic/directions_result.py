@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from itertools import zip_longest
 from math import atan2, degrees, gcd, lcm
 from typing import Annotated, Literal, TypedDict
 
@@ -58,14 +59,23 @@ class ExactDirection:
     ) -> ExactDirection:
         """The direction; a rational one is the shortest integer vector that points up.
 
+        The degrees of x and y are less than that of a polynomial of degree two or more.
+
         >>> str(ExactDirection.of((-1, 2), (Fraction(1, 2), Fraction(1, 2)), (0, 4), (-6,)))
         '-1,3'
         """
+        pair: list[Fraction] | None = None
         if len(polynomial) == 2:
             t = Fraction(-polynomial[0], polynomial[1])
-            p, q = (sum((c * t**k for k, c in enumerate(form)), Fraction(0)) for form in (x, y))
-            common = lcm(p.denominator, q.denominator)
-            whole = int(p * common), int(q * common)
+            pair = [sum((c * t**k for k, c in enumerate(form)), Fraction(0)) for form in (x, y)]
+        else:  # x / y is rational where all coefficients have this quotient
+            places = list(zip_longest(x, y, fillvalue=0))
+            p, q = next(place for place in places if any(place))
+            if all(p * d == q * c for c, d in places):
+                pair = [Fraction(p), Fraction(q)]
+        if pair is not None:
+            common = lcm(*(z.denominator for z in pair))
+            whole = [int(z * common) for z in pair]
             scale = gcd(*whole) * (-1 if whole[1] < 0 or (whole[1] == 0 > whole[0]) else 1)
             return cls(
                 (0, 1), (Fraction(0), Fraction(0)), (whole[0] // scale,), (whole[1] // scale,)

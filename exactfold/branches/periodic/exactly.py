@@ -111,6 +111,8 @@ def rays_on(problem: PeriodicProblem, basis: Sequence[Row], chart: Row) -> list[
     )
     if len(others):
         classes = classes_of_ideal(sparse_quadrics(system), len(others)) or ()
+        for zeros in classes:
+            zeros.verify(system)
     else:
         classes = () if any(m[0][0] for m in system.matrices) else (_POINT,)
     return [

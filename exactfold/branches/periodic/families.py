@@ -26,7 +26,7 @@ from exactfold.exact.linalg import nullspace
 from exactfold.rigidity.equations.all_directions import AllDirections, FlatStar
 from exactfold.rigidity.equations.periodic import Row, direction_of
 from exactfold.rigidity.equations.quadratic import QuadraticSystem, primitive_matrices
-from exactfold.solve.algebraic.groebner_bases import classes_of_ideal
+from exactfold.solve.algebraic.groebner_bases import UNDER_LIMIT, classes_of_ideal
 from exactfold.solve.algebraic.quotient import sparse_quadrics
 
 _ZEROS = (Fraction(0),) * 3
@@ -148,9 +148,13 @@ class Families:
         system = QuadraticSystem(primitive_matrices(star.forms))
         if len(others) > MOST_UNKNOWNS:
             raise OpenFamiliesError(f"{len(others)} unknowns are too many for a Groebner basis")
+        if len(others) > UNDER_LIMIT and self.clock.limit is not None:
+            raise OpenFamiliesError(f"{len(others)} unknowns are too many under a limit of time")
         classes = classes_of_ideal(sparse_quadrics(system), len(others))
         if classes is None:
             raise OpenFamiliesError("a pleat with flat vertices has families along a whole curve")
+        for zeros in classes:
+            zeros.verify(system)
         return [
             real.direction(self.problem)
             for zeros in classes

@@ -27,7 +27,7 @@ from exactfold.solve.algebraic.quotient import (
 from exactfold.solve.numeric.homotopy import homotopy
 
 ENGINES = ("roots", "lifting", "flint", "sympy", "msolve")
-_STOPPED = 5  # up to this size a basis over Q is begun under a limit of time
+UNDER_LIMIT = 5  # up to this size a basis over Q is begun under a limit of time
 _SMALL = 4  # up to this size a basis over Q is as fast as lifting
 
 
@@ -100,7 +100,7 @@ def groebner(
         return _verified(system, system.bezout_number, msolve_classes(system), engine)
     if clock.passed:
         raise NotApplicableError(clock.said)
-    if large and clock.limit is not None and system.size > _STOPPED:
+    if large and clock.limit is not None and system.size > UNDER_LIMIT:
         raise NotApplicableError(
             f"two fast engines do not apply, and a Groebner basis over Q in {system.size} unknowns "
             "is not begun under a limit of time"

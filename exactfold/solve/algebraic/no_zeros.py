@@ -8,7 +8,13 @@ from typing import Final, TypeAlias
 
 from flint import fmpz, nmod_mat, nmod_poly
 
+from exactfold._support.clock import Clock
+
 IntRow: TypeAlias = Sequence[int]
+
+NO_LIMIT: Final = Clock()
+_STEPS: Final = 2e9
+"""Products in a second, of a slow machine, by which the time of a rank is foreseen."""
 
 _PRIMES: Final = 200
 """How many primes are tried."""
@@ -16,7 +22,12 @@ MOST_MONOMIALS: Final = 4000
 """The most columns of a matrix whose rank is computed."""
 
 
-def only_zero(linear: Sequence[IntRow], quadrics: Sequence[Sequence[IntRow]], prime: int) -> bool:
+def only_zero(
+    linear: Sequence[IntRow],
+    quadrics: Sequence[Sequence[IntRow]],
+    prime: int,
+    clock: Clock = NO_LIMIT,
+) -> bool:
     """Whether linear forms and quadrics have no common zero but 0, modulo a prime and so over Q.
 
     `linear` are rows, and `quadrics` symmetric matrices, of integers modulo `prime`. They are
@@ -26,7 +37,8 @@ def only_zero(linear: Sequence[IntRow], quadrics: Sequence[Sequence[IntRow]], pr
     of them is a unit: it reduces to a zero modulo the prime. So True is a proof for that field,
     too; False says nothing. Zeros modulo the prime are excluded if all monomials of one degree are
     combinations of the quadrics times monomials (F. S. Macaulay, "The Algebraic Theory of Modular
-    Systems", 1916); degree n + 1 suffices for n unknowns.
+    Systems", 1916); degree n + 1 suffices for n unknowns. A matrix that would take longer than the
+    clock has left is not begun.
 
     >>> square, product = [[1, 0], [0, 0]], [[0, 1], [1, 0]]
     >>> only_zero([], [square, [[0, 0], [0, 1]]], 101), only_zero([], [square, product], 101)
@@ -41,7 +53,7 @@ def only_zero(linear: Sequence[IntRow], quadrics: Sequence[Sequence[IntRow]], pr
         for form in quadrics
     ]
     terms = [terms for form in forms if (terms := _terms(form, size))]
-    return len(terms) >= size and _has_all(terms, size, prime)
+    return len(terms) >= size and _has_all(terms, size, prime, clock)
 
 
 def roots_modulo(polynomial: Sequence[int]) -> Iterator[tuple[int, int]]:
@@ -94,7 +106,9 @@ def _terms(form: nmod_mat, size: int) -> dict[tuple[int, int], int]:
     return found
 
 
-def _has_all(terms: Sequence[dict[tuple[int, int], int]], size: int, prime: int) -> bool:
+def _has_all(
+    terms: Sequence[dict[tuple[int, int], int]], size: int, prime: int, clock: Clock
+) -> bool:
     """Whether the quadrics times monomials span all monomials of some degree up to n + 1."""
     for degree in range(2, size + 2):
         columns = {m: k for k, m in enumerate(combinations_with_replacement(range(size), degree))}
@@ -103,6 +117,9 @@ def _has_all(terms: Sequence[dict[tuple[int, int], int]], size: int, prime: int)
         factors = list(combinations_with_replacement(range(size), degree - 2))
         if len(factors) * len(terms) < len(columns):
             continue
+        steps = len(factors) * len(terms) * len(columns) ** 2
+        if clock.left is not None and steps > _STEPS * clock.left:
+            return False
         entries = []
         for quadric in terms:
             for factor in factors:

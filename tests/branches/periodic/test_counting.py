@@ -15,10 +15,12 @@ from exactfold.branches.periodic.lines import QuadraticLine
 from exactfold.branches.periodic.spaces import Spaces
 from exactfold.checker.sheets.cell import CellForms
 from exactfold.checker.sheets.cell import read_cell as read_checked
-from exactfold.errors import NotApplicableError, NotCountedError, UsageError
+from exactfold.errors import NotApplicableError, NotCountedError, SolverError, UsageError
 from exactfold.pattern import CELLS, PeriodicPattern, cell_document, random_cell, read_cell
 from exactfold.rigidity.equations.periodic import PeriodicProblem
 from exactfold.rigidity.equations.quadratic import QuadraticSystem
+from exactfold.solve.algebraic import groebner_bases
+from exactfold.solve.algebraic.exact_solution import RootClass
 from exactfold.solve.algebraic.groebner_bases import groebner
 
 EXPECTED = {
@@ -166,6 +168,15 @@ def test_lines_over_a_quadratic_field_beside_a_plane_of_pleats() -> None:
     claims = checker.check(document)
     doubled = [b["multiplicity"] for b in claims["branches"] if b["vertex_signs"][0] == "0"]
     assert doubled == [2, 2]
+
+
+def test_zeros_of_a_groebner_basis_are_verified(monkeypatch: pytest.MonkeyPatch) -> None:
+    false = RootClass.from_coordinates((-2, 0, 1), [(Fraction(0), Fraction(1))], 1, (1,))
+    monkeypatch.setattr(groebner_bases, "classes_of_ideal", lambda *_: (false,))
+    problem = PeriodicProblem.of(read_cell("yoshimura-cell"), (3, 2))
+    one, zero = Fraction(1), Fraction(0)
+    with pytest.raises(SolverError, match="does not vanish"):
+        rays_on(problem, [(one, zero), (zero, one)], (zero, one))
 
 
 def test_a_line_in_a_larger_space_is_no_component() -> None:

@@ -14,12 +14,17 @@ import exactfold
 from exactfold import UNDECIDED, Verdict
 from exactfold._support.clock import Clock
 from exactfold.branches import count_directions, count_periodic
+from exactfold.branches.periodic import crossings, families
 from exactfold.branches.periodic.crossings import Crossings, OpenVertexError
+from exactfold.branches.periodic.directions_result import ExactDirection
 from exactfold.branches.periodic.families import Families, OpenFamiliesError
-from exactfold.errors import UsageError
+from exactfold.errors import SolverError, UsageError
 from exactfold.pattern import PeriodicPattern, random_cell, read_cell
 from exactfold.rigidity.equations.all_directions import AllDirections
 from exactfold.rigidity.equations.periodic import PeriodicProblem
+from exactfold.rigidity.equations.quadratic import primitive_matrices
+from exactfold.solve.algebraic.exact_solution import RootClass
+from exactfold.solve.algebraic.no_zeros import only_zero
 from exactfold.solve.numeric.periodic_rays import PeriodicRays
 
 
@@ -187,6 +192,16 @@ def rows_of_loops(number: int) -> PeriodicPattern:
     return PeriodicPattern([(1, 0), (0, number)], points, faces)
 
 
+def test_a_direction_is_rational_where_the_root_is_not() -> None:
+    """(1 + 2 t, 3 + 6 t) is 1,3 up to a factor for every t; (1 + 2 t, 3 + 5 t) is not rational."""
+    root = (-2, 0, 1), (Fraction(1), Fraction(2))
+    for sign in (1, -1):
+        n = ExactDirection.of(*root, (sign, 2 * sign), (3 * sign, 6 * sign))
+        assert n == ExactDirection.of((0, 1), (Fraction(0), Fraction(0)), (1,), (3,))
+    assert str(ExactDirection.of(*root, (0, 2), (0, 0))) == "1,0"
+    assert not ExactDirection.of(*root, (1, 2), (3, 5)).is_rational
+
+
 def test_directions_with_families_that_are_not_known() -> None:
     assert directions_of_families(rows_of_loops(2)) == ["0,1"]
     result = count_directions(rows_of_loops(4))
@@ -198,6 +213,16 @@ def test_directions_with_families_that_are_not_known() -> None:
         Families(AllDirections.of(cell), base, Clock(0)).directions()
     with pytest.raises(OpenFamiliesError, match="in no quadratic field"):
         Families(AllDirections.of(cell), replace(base, evidence=None), Clock()).directions()
+
+
+def test_zeros_of_a_groebner_basis_are_verified(monkeypatch: pytest.MonkeyPatch) -> None:
+    def false(_: object, size: int) -> tuple[RootClass, ...]:
+        point = [(Fraction(0), Fraction(1))] * size
+        return (RootClass.from_coordinates((-2, 0, 1), point, 1, (1, *[0] * (size - 1))),)
+
+    monkeypatch.setattr(families, "classes_of_ideal", false)
+    with pytest.raises(SolverError, match="does not vanish"):
+        count_directions(random_cell(5, 1150, 64))
 
 
 def test_a_time_limit_and_a_tangent_that_may_be_flat_leave_it_open(
@@ -212,6 +237,22 @@ def test_a_time_limit_and_a_tangent_that_may_be_flat_leave_it_open(
     assert result.status is UNDECIDED
     assert "a tangent may be flat" in result.reason
     assert len(result.crossings) == 3
+
+
+def test_matrices_and_bases_that_would_take_too_long_are_not_begun(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At vertex 2, there are seven quadrics in six unknowns; at vertex 0 they have no zeros."""
+    whole = AllDirections.of(random_cell(8, 100, 16))
+    star = whole.flat_star(0)
+    assert star is not None
+    matrices = primitive_matrices(star.forms)
+    assert only_zero([], matrices, 2147483647, Clock(100))
+    assert not only_zero([], matrices, 2147483647, Clock(0))
+    monkeypatch.setattr(crossings, "only_zero", lambda *_: False)
+    monkeypatch.setattr(crossings, "classes_of_ideal", None)
+    with pytest.raises(OpenVertexError, match="6 unknowns are too many under a limit"):
+        list(Crossings(whole, Clock(1000)).places(2))
 
 
 def test_the_tangent_test_refuses_if_the_forms_of_other_flat_vertices_are_missing() -> None:
