@@ -83,6 +83,11 @@ def test_both_checkers_agree_on_every_fixture(verifier: Path) -> None:
             assert "only version 1 of" in text, (path.name, text)
             multiple = path.name not in {f"compact-roots-{name}.txt" for name in SIMPLE}
             assert ("multiple roots" in text) == (path in COMPACT and multiple), path.name
+            few = {"compact-roots-rigid.txt": 3, "compact-roots-single-vertex.txt": 6}.get(
+                path.name
+            )
+            found = re.search(r"of a sheet with (\d+) boundary vertices, not four", text)
+            assert (found and int(found[1])) == few, path.name
     assert len(accepted) >= 15
     assert {"compact-dart.txt", "compact-reflex-either-side.txt", "branch-dart.json"} <= set(
         accepted

@@ -206,6 +206,8 @@ let outside header claims =
     | _ -> [] in
   if Z.lt (Z.shift_left (number "distinct") (List.length inside)) (number "with_multiplicity") then
     ", which claims multiple roots, at which stars are flat: the theorem counts branches only where no star is flat"
+  else if not (Z.equal (number "boundary") (Z.of_int 4)) then
+    Printf.sprintf ", of a sheet with %s boundary vertices, not four" (Z.to_string (number "boundary"))
   else ", which has an entry for each root of any kind"
 
 let verify path =
