@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Final, cast
 
 from exactfold._support.clock import Clock
+from exactfold.branches.periodic.spaces import chart_where_one, dot
 from exactfold.branches.values.letters import LETTERS
 from exactfold.branches.values.roots import AlgebraicRoot
 from exactfold.errors import NotApplicableError
@@ -91,26 +92,19 @@ def rays_on(problem: PeriodicProblem, basis: Sequence[Row], chart: Row) -> list[
     >>> [ray.b for ray in rays_on(problem, whole, (Fraction(0), Fraction(1)))]
     [1]
     """
-    values = [_dot(chart, row) for row in basis]
-    place = next((k for k, value in enumerate(values) if value), None)
-    if place is None or len(basis) > MOST_UNKNOWNS + 1:
+    columns = chart_where_one(basis, chart)
+    if columns is None or len(basis) > MOST_UNKNOWNS + 1:
         return []
     from exactfold.solve.algebraic.groebner_bases import classes_of_ideal
 
-    foot = [x / values[place] for x in basis[place]]
-    others = [
-        [x - value * f for x, f in zip(row, foot, strict=True)]
-        for k, (row, value) in enumerate(zip(basis, values, strict=True))
-        if k != place
-    ]
-    lift = [[*row] for row in zip(*others, foot, strict=True)]
+    lift = [[*row] for row in zip(*columns, strict=True)]
     matrix = to_flint(lift)
     forms = [matrix.transpose() * to_flint(star.form) * matrix for star in problem.stars]
     system = QuadraticSystem(
         primitive_matrices([[[from_fmpq(x) for x in row] for row in f.tolist()] for f in forms])
     )
-    if len(others):
-        classes = classes_of_ideal(sparse_quadrics(system), len(others)) or ()
+    if len(columns) > 1:
+        classes = classes_of_ideal(sparse_quadrics(system), len(columns) - 1) or ()
         for zeros in classes:
             zeros.verify(system)
     else:
@@ -124,7 +118,7 @@ def rays_on(problem: PeriodicProblem, basis: Sequence[Row], chart: Row) -> list[
 
 def _ray(problem: PeriodicProblem, root: AlgebraicRoot, lift: list[list[Fraction]]) -> ExactRay:
     def sign(row: tuple[int, ...]) -> int:
-        on_y = [_dot([*map(Fraction, row)], column) for column in zip(*lift, strict=True)]
+        on_y = [dot([*map(Fraction, row)], column) for column in zip(*lift, strict=True)]
         return cast("int", root.sign(integer_row(on_y)))  # of an algebraic number, it is known
 
     known = root.root_class
@@ -138,10 +132,6 @@ def _ray(problem: PeriodicProblem, root: AlgebraicRoot, lift: list[list[Fraction
         sign(problem.bend),
         "".join(LETTERS[sign(row)] for row in problem.folds.values()),
         tuple(
-            tuple(_dot(row, [entry[k] for entry in padded]) for k in range(length)) for row in lift
+            tuple(dot(row, [entry[k] for entry in padded]) for k in range(length)) for row in lift
         ),
     )
-
-
-def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))

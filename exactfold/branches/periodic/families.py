@@ -21,7 +21,7 @@ from exactfold.branches.periodic.crossings import MOST_UNKNOWNS, Place
 from exactfold.branches.periodic.directions_result import ExactDirection
 from exactfold.branches.periodic.lines import polar
 from exactfold.branches.periodic.result import PeriodicCount
-from exactfold.branches.periodic.spaces import combined, dot, echelon, image
+from exactfold.branches.periodic.spaces import chart_where_one, combined, dot, echelon, image
 from exactfold.exact.linalg import nullspace
 from exactfold.rigidity.equations.all_directions import AllDirections, FlatStar
 from exactfold.rigidity.equations.periodic import Row, direction_of
@@ -118,7 +118,6 @@ class Families:
 
         What changes neither the forms nor B is left out.
         """
-        level = self.problem.level
         kernel = nullspace(
             [
                 *([dot(row, z) for z in space] for row in self.problem.bend_rows()),
@@ -127,17 +126,10 @@ class Families:
         )
         pivots = {next(k for k, c in enumerate(row) if c) for row in echelon(kernel)}
         kept = [z for k, z in enumerate(space) if k not in pivots]
-        values = [dot(level, z) for z in kept]
-        place = next((k for k, value in enumerate(values) if value), None)
-        if place is None or len(kept) == 1:  # B is indefinite, or some form is not 0
+        columns = chart_where_one(kept, self.problem.level)
+        if columns is None or len(kept) == 1:  # B is indefinite, or some form is not 0
             return []
-        foot = [x / values[place] for x in kept[place]]
-        others = [
-            [x - value * f for x, f in zip(z, foot, strict=True)]
-            for k, (z, value) in enumerate(zip(kept, values, strict=True))
-            if k != place
-        ]
-        columns = [*others, foot]
+        size = len(columns) - 1
         star = FlatStar(
             tuple(zip(*columns, strict=True)),
             tuple(
@@ -146,11 +138,11 @@ class Families:
             ),
         )
         system = QuadraticSystem(primitive_matrices(star.forms))
-        if len(others) > MOST_UNKNOWNS:
-            raise OpenFamiliesError(f"{len(others)} unknowns are too many for a Groebner basis")
-        if len(others) > UNDER_LIMIT and self.clock.limit is not None:
-            raise OpenFamiliesError(f"{len(others)} unknowns are too many under a limit of time")
-        classes = classes_of_ideal(sparse_quadrics(system), len(others))
+        if size > MOST_UNKNOWNS:
+            raise OpenFamiliesError(f"{size} unknowns are too many for a Groebner basis")
+        if size > UNDER_LIMIT and self.clock.limit is not None:
+            raise OpenFamiliesError(f"{size} unknowns are too many under a limit of time")
+        classes = classes_of_ideal(sparse_quadrics(system), size)
         if classes is None:
             raise OpenFamiliesError("a pleat with flat vertices has families along a whole curve")
         for zeros in classes:

@@ -231,6 +231,26 @@ def combined(weights: Sequence[Fraction], vectors: Sequence[Sequence[Fraction]])
     return tuple(dot(weights, column) for column in zip(*vectors, strict=True))
 
 
+def chart_where_one(
+    basis: Sequence[Sequence[Fraction]], row: Sequence[Fraction]
+) -> list[Sequence[Fraction]] | None:
+    """The chart of a span on which a row is 1: the directions in which it goes on, then a point.
+
+    None if the row vanishes on the span.
+    """
+    values = [dot(row, vector) for vector in basis]
+    place = next((k for k, value in enumerate(values) if value), None)
+    if place is None:
+        return None
+    foot = [x / values[place] for x in basis[place]]
+    others = [
+        [x - value * f for x, f in zip(vector, foot, strict=True)]
+        for k, (vector, value) in enumerate(zip(basis, values, strict=True))
+        if k != place
+    ]
+    return [*others, foot]
+
+
 def summed(forms: Sequence[Sequence[Row]]) -> list[Row]:
     """The sum of forms."""
     return [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exactfold._support.arrays import FloatArray, IndexArray
+from exactfold._support.arrays import BoolArray, FloatArray, IndexArray
 
 _LEAST = 8
 """Parts with fewer vertices are not halved again."""
@@ -49,7 +49,7 @@ def nested_dissection(places: FloatArray, ends: IndexArray) -> IndexArray:
     return np.lexsort((level, bound))
 
 
-def _halves(places: FloatArray, part: IndexArray, count: int) -> np.ndarray:
+def _halves(places: FloatArray, part: IndexArray, count: int) -> BoolArray:
     """Whether each point lies in the second half of its part, across the longer extent."""
     low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(low, part, places)
@@ -60,4 +60,4 @@ def _halves(places: FloatArray, part: IndexArray, count: int) -> np.ndarray:
     sizes = np.bincount(part, minlength=count)
     rank = np.empty(len(places), dtype=np.int64)
     rank[order] = np.arange(len(places)) - (np.cumsum(sizes) - sizes)[part[order]]
-    return rank >= sizes[part] // 2
+    return np.asarray(rank >= sizes[part] // 2)
