@@ -33,7 +33,6 @@ import tempfile
 import time
 import traceback
 from collections import Counter
-from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from types import FunctionType
@@ -46,6 +45,7 @@ from hypothesis import strategies as st
 
 from exactfold import checker
 from exactfold.app.verbs.checking import quickest
+from exactfold.checker.core.reading import parse_rational
 from exactfold.errors import InputError, UsageError
 from exactfold.pattern.opening import opened
 from exactfold.pattern.periodic.cell_files import parse_cell_bytes
@@ -166,13 +166,13 @@ def _says_less(key: str, claim: Any, true: Any) -> bool:
     if type(claim) is not type(true):
         return False
     if key in _AT_LEAST + _AT_MOST or isinstance(true, str):
-        with contextlib.suppress(ValueError):  # of numbers; letters follow below
-            claim, true = Fraction(claim), Fraction(true)
+        with contextlib.suppress(checker.CertificateError):  # of numbers; letters follow below
+            claim, true = parse_rational(claim), parse_rational(true)
             return claim == true or (
                 claim < true if key in _AT_LEAST else key in _AT_MOST and claim > true
             )
     if key in _WITHIN:
-        (low, high), (least, most) = (map(Fraction, pair) for pair in (claim, true))
+        (low, high), (least, most) = (map(parse_rational, pair) for pair in (claim, true))
         return low <= least and most <= high
     if isinstance(true, dict):
         return claim.keys() == true.keys() and all(_says_less(k, claim[k], true[k]) for k in true)

@@ -110,6 +110,7 @@ def test_other_claims_that_are_valid_are_defects(
         ("length", "1/3", "2/6", True),
         ("length", "1/4", "1/3", True),
         ("length", "1/2", "1/3", False),
+        ("radius", "1/1" + 5000 * "0", "1/3", True),
         ("limit", "1/4", "1/3", False),
         ("bound", "1/4", "1/3", False),
         ("bound", "1/2", "1/3", True),
