@@ -54,7 +54,8 @@ Proof.
     rewrite sum_swap. apply sum_ext. intros e _. rewrite (linear_coordinates (L e) I v (Lin e) D Zv).
     rewrite (Rmult_comm _ (L e w)), <- sum_scal. apply sum_ext. intros. ring. }
   assert (ML : forall p, linear (M p)).
-  { intros p a s b. unfold M. rewrite <- sum_scal, <- sum_plus. apply sum_ext. intros e _. rewrite (Lin e a s b). ring. }
+  { intros p a s b. unfold M. rewrite <- sum_scal, <- sum_plus. apply sum_ext. intros e _. rewrite (Lin e a s b).
+    ring. }
   assert (MI : forall w, zero_off I w -> (forall p, In p I -> M p w = 0) -> w = zero).
   { intros w Zw Hw. apply Inj; [assumption|].
     assert (S0 : sum E (fun e => L e w * L e w) <= 0).
@@ -124,7 +125,8 @@ Lemma res_bound s i : In i I -> Rabs (residual I (q s) k Y i m) <= Rabs s * size
 Proof.
   intros Hi. rewrite residual_form by assumption. unfold form. rewrite Zero by assumption.
   replace (k i + s * b i m m - k i) with (s * b i m m) by ring. rewrite Rabs_mult.
-  apply Rmult_le_compat_l; [apply Rabs_pos|]. pose proof (bound_size i Hi). pose proof (bound_parts i). unfold bound in *. lra.
+  apply Rmult_le_compat_l; [apply Rabs_pos|]. pose proof (bound_size i Hi). pose proof (bound_parts i).
+  unfold bound in *. lra.
 Qed.
 
 Lemma unit_zero_off j : In j I -> zero_off I (unit j).
@@ -139,10 +141,12 @@ Proof.
     + right. rewrite <- Rabs_mult, <- Rabs_Ropp. f_equal. ring.
     + rewrite Identity by (try assumption; now apply unit_zero_off). unfold delta, unit, upd, zero.
       destruct (Nat.eq_dec i j); congruence.
-  - apply Rmult_le_compat_l; [apply Rabs_pos|]. pose proof (bound_size i Hi). pose proof (bound_parts i). unfold bound in *. lra.
+  - apply Rmult_le_compat_l; [apply Rabs_pos|]. pose proof (bound_size i Hi). pose proof (bound_parts i).
+    unfold bound in *. lra.
 Qed.
 
-Lemma sec_bound s i : Rabs s <= 1 -> In i I -> sum I (fun j => sum I (fun l => Rabs (second I (q s) Y i j l))) <= size.
+Lemma sec_bound s i : Rabs s <= 1 -> In i I ->
+  sum I (fun j => sum I (fun l => Rabs (second I (q s) Y i j l))) <= size.
 Proof.
   intros Ps Hi. apply Rle_trans with (sum I (fun j => sum I (fun l =>
     Rabs (2 * a i (unit j) (unit l)) + Rabs (2 * b i (unit j) (unit l))))).
@@ -160,7 +164,8 @@ Definition reach : R := / (4 * (size + 1)).
 Definition width : R := reach / (2 * (size + 1)).
 Definition slope_of (s : R) : R := Rabs s * size + reach * size.
 
-Lemma sizes : 0 < reach /\ reach <= 1 / 4 /\ 0 < width /\ width <= 1 /\ reach * size <= 1 / 4 /\ width * size <= reach / 2.
+Lemma sizes : 0 < reach /\ reach <= 1 / 4 /\ 0 < width /\ width <= 1 /\ reach * size <= 1 / 4 /\
+  width * size <= reach / 2.
 Proof.
   pose proof size_pos as P. assert (Q : reach * (size + 1) = 1 / 4) by (unfold reach; field; lra).
   assert (Pr : 0 < reach) by (apply Rinv_0_lt_compat; lra). assert (0 <= reach * size) by (apply Rmult_le_pos; lra).
@@ -182,7 +187,8 @@ Proof.
   assert (Bv : forall j, In j I -> Rabs (v j) <= reach) by exact Box.
   assert (Lin : forall x, linear (b i x)) by (intros x c t d; apply b_move).
   replace (b i y y) with (b i m m + 2 * b i m v + b i v v).
-  2:{ replace y with (move m 1 v) by (unfold v; vec). rewrite b_move, !(b_sym i (move m 1 v)), !b_move, (b_sym i v m). ring. }
+  2:{ replace y with (move m 1 v) by (unfold v; vec).
+      rewrite b_move, !(b_sym i (move m 1 v)), !b_move, (b_sym i v m). ring. }
   assert (B1 : Rabs (2 * b i m v) <= sum I (fun j => Rabs (2 * b i m (unit j)))).
   { eapply Rle_trans; [apply (linear_on_box (fun w => 2 * b i m w) I reach v); try assumption|].
     - intros c t d. rewrite b_move. ring.
@@ -194,7 +200,8 @@ Proof.
     assert (P : 0 <= sum I (fun l => Rabs (b i (unit j) (unit l)))) by (apply sum_nonneg; intros; apply Rabs_pos).
     apply Rle_trans with (sum I (fun l => Rabs (b i (unit j) (unit l)))).
     - pose proof (Rabs_pos (b i (unit j) v)). nra.
-    - apply sum_le. intros l _. rewrite Rabs_mult, (Rabs_right 2) by lra. pose proof (Rabs_pos (b i (unit j) (unit l))). lra. }
+    - apply sum_le. intros l _. rewrite Rabs_mult, (Rabs_right 2) by lra.
+      pose proof (Rabs_pos (b i (unit j) (unit l))). lra. }
   assert (B3 : sum I (fun j => sum I (fun l => Rabs (2 * b i (unit j) (unit l)))) <= sum I (fun j => sum I (fun l =>
     Rabs (2 * a i (unit j) (unit l)) + Rabs (2 * b i (unit j) (unit l))))).
   { apply sum_le. intros j _. apply sum_le. intros l _. pose proof (Rabs_pos (2 * a i (unit j) (unit l))). lra. }
@@ -217,7 +224,8 @@ Proof.
     - intros l Hl. now apply inv_bound.
     - intros l Hl. apply sec_bound; [lra|assumption]. }
   assert (Nx : next I (q s) k Y x j = x j).
-  { unfold next. destruct in_dec; [|contradiction]. rewrite residual_form by assumption. rewrite Zx by assumption. ring. }
+  { unfold next. destruct in_dec; [|contradiction]. rewrite residual_form by assumption. rewrite Zx by assumption.
+    ring. }
   assert (Ny : next I (q s) k Y y j = y j - (s - s') * b j y y).
   { unfold next. destruct in_dec; [|contradiction]. rewrite residual_form by assumption.
     rewrite <- (Zy j Hj). unfold form. ring. }
@@ -236,7 +244,8 @@ Lemma test s : Rabs s <= width ->
   (forall i, In i I -> sum I (fun j => sum I (fun l => Rabs (second I (q s) Y i j l))) <= size) /\
   Rabs s * size + reach * size < 1 /\ Rabs s * size + (Rabs s * size + reach * size) * reach <= reach.
 Proof.
-  intros H. pose proof sizes as (Pr & _ & _ & Pw & Rs & Ws). pose proof (slope_small s H) as Sl. unfold slope_of in Sl.
+  intros H. pose proof sizes as (Pr & _ & _ & Pw & Rs & Ws). pose proof (slope_small s H) as Sl.
+  unfold slope_of in Sl.
   pose proof size_pos. pose proof (Rabs_pos s). repeat split; intros; auto using res_bound, inv_bound.
   - apply sec_bound; [lra|assumption].
   - lra.

@@ -57,9 +57,12 @@ Proof.
     In c (flat_map (fun f : face => let '(a, b, c) := f in [(a, b, c); (b, c, a); (c, a, b)]) fs)).
   { intros c Hc'. apply in_flat_map. exists (x, y, z). now split. }
   simpl in Hc. destruct Hc as [E|[E|[E|[]]]]; injection E as <- <- <-.
-  - repeat split; [exists (x, y, z)|exists (y, z, x)|exists (z, x, y)]; (split; [reflexivity|apply All; simpl; tauto]).
-  - repeat split; [exists (y, z, x)|exists (z, x, y)|exists (x, y, z)]; (split; [reflexivity|apply All; simpl; tauto]).
-  - repeat split; [exists (z, x, y)|exists (x, y, z)|exists (y, z, x)]; (split; [reflexivity|apply All; simpl; tauto]).
+  - repeat split; [exists (x, y, z)|exists (y, z, x)|exists (z, x, y)];
+      (split; [reflexivity|apply All; simpl; tauto]).
+  - repeat split; [exists (y, z, x)|exists (z, x, y)|exists (x, y, z)];
+      (split; [reflexivity|apply All; simpl; tauto]).
+  - repeat split; [exists (z, x, y)|exists (x, y, z)|exists (y, z, x)];
+      (split; [reflexivity|apply All; simpl; tauto]).
 Qed.
 
 Lemma around v : In v (inner S) -> exists z l, fan S v = z :: l ++ [z].
@@ -79,7 +82,8 @@ Qed.
 
 Lemma load_widen u v : In v (inner S) -> load (widen at_ u) v = 0.
 Proof.
-  intros Hi. unfold load. rewrite (sum_ext _ _ (fun s => - / 2 * (let '(a, b) := s in turning at_ u v a - turning at_ u v b))).
+  intros Hi. unfold load. rewrite (sum_ext _ _ (fun s => - / 2 * (let '(a, b) := s in
+    turning at_ u v a - turning at_ u v b))).
   - destruct (around v Hi) as (z & l & F). rewrite sum_scal, F, (telescope (turning at_ u v)). ring.
   - intros [a b] Hs. rewrite share_widen; [ring|]. pose proof (step_left S v a b (inner_vertex S v Hi) Hs). lra.
 Qed.
@@ -106,7 +110,8 @@ Qed.
 
 Lemma load_ext fs c c' v : both_ways c -> both_ways c' -> all_at fs v ->
   (forall x y, In (x, y) (sides fs) -> c x y = c' x y) -> load c v = load c' v.
-Proof. intros Ev Ev' All E. apply sum_ext. intros [a b] Hs. apply (share_ext fs); try assumption. exact (All _ Hs). Qed.
+Proof. intros Ev Ev' All E. apply sum_ext. intros [a b] Hs. apply (share_ext fs); try assumption. exact (All _ Hs).
+Qed.
 
 Lemma even_widen u : both_ways (widen at_ u).
 Proof. intros a b. unfold widen, dot, sub. cbn [fst snd]. ring. Qed.
@@ -123,7 +128,8 @@ Proof.
   transitivity (load (fun x y => 0 + - / 2 * ((h y - h x) * (h y - h x))) v).
   - apply sum_ext. intros [a b] _. unfold share, Rdiv. ring.
   - rewrite (load_add (fun _ _ => 0)), load_heights by assumption.
-    replace (load (fun _ _ => 0) v) with 0; [ring|]. symmetry. apply sum_zero. intros [a b] _. unfold share, Rdiv. ring.
+    replace (load (fun _ _ => 0) v) with 0; [ring|]. symmetry. apply sum_zero. intros [a b] _. unfold share, Rdiv.
+    ring.
 Qed.
 
 (** A motion that keeps all lengths has curvature 0. *)
@@ -213,12 +219,14 @@ Proof.
   assert (Rev : forall u a b, widen at_ u b a = c b a -> widen at_ u a b = c a b)
     by (intros u a b H; now rewrite <- (even_widen u a b), H, Ev).
   assert (Tip : forall vs fs u x y z, moved fs u -> (forall a b, In (a, b) (sides fs) -> In a vs /\ In b vs) ->
-    In (x, y, z) (corners (faces S)) -> widen at_ u x y = c x y -> ~ In z vs -> exists u', moved ((x, y, z) :: fs) u').
+    In (x, y, z) (corners (faces S)) -> widen at_ u x y = c x y -> ~ In z vs -> exists u',
+      moved ((x, y, z) :: fs) u').
   { intros vs fs u x y z Kp On Hc Xy New. destruct (distinct x y z Hc) as (Nx & Ny & _).
     destruct (tip_moves u (c z x) (c z y) x y z) as (w & W & W'); [pose proof (corner_left x y z Hc); lra|].
     set (u' := fun v => if Nat.eq_dec v z then w else u v). exists u'.
     assert (Uz : u' z = w) by (unfold u'; destruct (Nat.eq_dec z z); [reflexivity|easy]).
-    assert (U : forall v, v <> z -> u' v = u v) by (intros v N; unfold u'; destruct (Nat.eq_dec v z); [contradiction|reflexivity]).
+    assert (U : forall v, v <> z -> u' v = u v) by (intros v N; unfold u'; destruct (Nat.eq_dec v z);
+      [contradiction|reflexivity]).
     intros a b H. apply sides_cons in H. destruct H as [E|[E|[E|H]]]; try (injection E as -> ->).
     - unfold widen. now rewrite !U.
     - apply Rev. unfold widen. now rewrite U, Uz.
@@ -228,7 +236,8 @@ Proof.
   - (* the first face: two vertices as they are wanted, and the tip *)
     destruct (distinct x y z Hc) as (Nx & Ny & Nxy). set (d := sub (at_ y) (at_ x)).
     assert (M : dot d d <> 0).
-    { pose proof (face_of_corner S _ _ _ Hc) as C. apply (cross_left _ (spoke x z)). unfold d, Sheet.spoke in *. lra. }
+    { pose proof (face_of_corner S _ _ _ Hc) as C. apply (cross_left _ (spoke x z)). unfold d, Sheet.spoke in *.
+      lra. }
     set (u := fun v => if Nat.eq_dec v y then (c x y / dot d d * fst d, c x y / dot d d * snd d) else (0, 0)).
     apply (Tip [x; y] [] u x y z); try assumption; try easy.
     + unfold widen, u. destruct (Nat.eq_dec y y), (Nat.eq_dec x y); try contradiction. fold d.
@@ -243,7 +252,8 @@ Proof.
     { set (f := fun s : nat * nat => let '(a, b) := s in share at_ c v a b + -1 * share at_ (widen at_ u) v a b).
       apply (sum_one (steps (fan S v)) f (x, y) Hs).
       - intros [a b] Hab. destruct (Others _ Hab) as [E|E]; [now left|right]. cbn [fst snd] in E. unfold f.
-        rewrite (share_ext fs c (widen at_ u) v a b Ev (even_widen u)); [ring| |exact E]. intros. symmetry. now apply Kp.
+        rewrite (share_ext fs c (widen at_ u) v a b Ev (even_widen u)); [ring| |exact E]. intros. symmetry.
+        now apply Kp.
       - transitivity (load c v + -1 * load (widen at_ u) v).
         + unfold load. rewrite <- sum_scal, <- sum_plus. apply sum_ext. intros [a b] _. reflexivity.
         + rewrite load_widen, Z by assumption. ring. }
@@ -271,7 +281,8 @@ Definition disk (F : list face) : Prop := (forall v, In v J -> In v (inner S) /\
 Theorem flex_iff F h : disk F -> ((forall v, In v J -> K S v h = 0) <-> exists u, keeps F h u).
 Proof.
   intros (Inside & vs & fs & G & All). split.
-  - intros Z. destruct (glued_flex h (fun v Hv => proj1 (Inside v Hv)) Z vs fs G) as (u & Kp). exists u. intros a b H. now apply Kp, All.
+  - intros Z. destruct (glued_flex h (fun v Hv => proj1 (Inside v Hv)) Z vs fs G) as (u & Kp). exists u.
+    intros a b H. now apply Kp, All.
   - intros (u & Kp) v Hv. destruct (Inside v Hv). now apply (flex_curvature F h u v).
 Qed.
 End Flex.
@@ -306,7 +317,8 @@ Fixpoint glue (ms : list (bool * face)) : option (list nat * list face) :=
       | Some (vs, fs) =>
         let star := steps (nth a (fans_of d) []) in
         if closing then
-          if mem a (inside d) && mem a J && has_side a b fs && has_side a c fs && mem2 (b, c) star && forallb (fun s =>
+          if mem a (inside d) && mem a J && has_side a b fs && has_side a c fs && mem2 (b,
+            c) star && forallb (fun s =>
             (Nat.eqb (fst s) b && Nat.eqb (snd s) c) || has_face (a, fst s, snd s) (corners fs)) star
           then Some (vs, (a, b, c) :: fs) else None
         else if has_side a b fs && negb (mem c vs) then Some (c :: vs, (a, b, c) :: fs) else None
