@@ -1,7 +1,7 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
   Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact Flex
-  Example BranchExample.
+  Curve Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.
@@ -24,6 +24,7 @@ Print Assumptions all_notched_emptied_verified.
 Print Assumptions exact_verified.
 Print Assumptions exact_notched_verified.
 Print Assumptions disk_moves.
+Print Assumptions curve.
 
 (** The others together. *)
 Definition others :=

@@ -53,6 +53,7 @@ ASSUMED = {
     "exact_verified": CLASSICAL,
     "exact_notched_verified": CLASSICAL,
     "disk_moves": REALS,
+    "curve": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
