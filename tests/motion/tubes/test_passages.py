@@ -17,7 +17,7 @@ from sixty_digits import assert_holds_the_node
 from exactfold import checker, random_square, schema
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report import motion_report
-from exactfold.app.viewer import ways
+from exactfold.app.viewer import known
 from exactfold.branches import find_branch
 from exactfold.exact.surds import float_bounds
 from exactfold.motion import certificate_with_contact, follow, follow_proved, prove, proving
@@ -219,13 +219,13 @@ def shown(proof):
 def test_what_is_said_of_a_node(proof, monkeypatch):
     told = f"{proof.end_text}; no two faces touch before it, nor at it"
     assert f"one curve without a gap, 4 tubes, {told}" in shown(proof)
-    monkeypatch.setattr(ways, "prove", lambda motion: proof)
-    assert told in ways._proof(proof.motion).said
+    monkeypatch.setattr(known, "prove", lambda motion: proof)
+    assert told in known.proof_of(proof.motion).said
     # Where faces may touch before it, it is not said that they do not.
     passed = replace(proof, passed=True)
     assert "no two faces touch before 0.50068592, then some may" in shown(passed)
-    monkeypatch.setattr(ways, "prove", lambda motion: passed)
-    assert "touch" not in ways._proof(proof.motion).said
+    monkeypatch.setattr(known, "prove", lambda motion: passed)
+    assert "touch" not in known.proof_of(proof.motion).said
     for one in (proof, passed):
         jsonschema.validate({**one.motion.to_dict(), "proof": one.to_dict()}, schema("motion"))
 
