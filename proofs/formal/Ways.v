@@ -18,7 +18,8 @@ Lemma in_a_side v : In v vertices -> exists a, In (v, a) (sides F).
 Proof.
   intros Hv. assert (St : exists s, In s (steps (fan S v))).
   { apply in_app_or in Hv. destruct Hv as [Hi|Hr].
-    - destruct (inner_full S v Hi) as (u & up & p & q & down & E & _). rewrite E. destruct up as [|z up]; eexists; now left.
+    - destruct (inner_full S v Hi) as (u & up & p & q & down & E & _). rewrite E.
+      destruct up as [|z up]; eexists; now left.
     - destruct (rim_convex S v Hr) as (u & mid & q & E & _). rewrite E. destruct mid as [|z mid]; eexists; now left. }
   destruct St as ([a b] & Hs). exists a. exact (proj1 (corner_sides F v a b (step_corner S v a b Hv Hs))).
 Qed.
@@ -82,7 +83,8 @@ Proof.
   intros Sol Non. destruct gluing as (Inside & vs & fs & G & Same & Vs).
   destruct (motion S I vs F fs (inner_once S) Inside G Same p q (proj2 (Vs p) Hp) (proj2 (Vs q) Hq) apart h Sol)
     as (t1 & delta & C & P & z & P1 & Pd & PC & Moves & Lip & Only).
-  { intros g Zg Kg. destruct (Non zero) as (w & _ & U). rewrite <- (U g), <- (U zero); [reflexivity| |]; split; try easy.
+  { intros g Zg Kg. destruct (Non zero) as (w & _ & U).
+    rewrite <- (U g), <- (U zero); [reflexivity| |]; split; try easy.
     intros v Hv. apply linear_zero. intros a s b. apply K2_move. }
   exists t1, delta, C, P, z. split; [exact P1|]. split; [exact Pd|]. split; [exact PC|]. split; [exact Moves|]. split.
   - intros t t' Ht Ht' v Hv. apply Lip; try assumption. now apply Vs.
