@@ -56,6 +56,8 @@ ASSUMED = {
     "curve": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "motion": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "true_motion_exists": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "ways": CLASSICAL,
+    "near_flat": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
