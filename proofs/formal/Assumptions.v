@@ -29,6 +29,7 @@ Print Assumptions motion.
 Print Assumptions true_motion_exists.
 Print Assumptions ways.
 Print Assumptions near_flat.
+Print Assumptions all_continue.
 
 (** The others together. *)
 Definition others :=

@@ -58,6 +58,7 @@ ASSUMED = {
     "true_motion_exists": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "ways": CLASSICAL,
     "near_flat": CLASSICAL,
+    "all_continue": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""
