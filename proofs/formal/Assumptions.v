@@ -1,7 +1,7 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
   Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact Flex
-  Curve Example BranchExample.
+  Curve Displacements Motion Near Gap Ways Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.
@@ -25,6 +25,11 @@ Print Assumptions exact_verified.
 Print Assumptions exact_notched_verified.
 Print Assumptions disk_moves.
 Print Assumptions curve.
+Print Assumptions motion.
+Print Assumptions true_motion_exists.
+Print Assumptions ways.
+Print Assumptions near_flat.
+Print Assumptions all_continue.
 
 (** The others together. *)
 Definition others :=
@@ -35,5 +40,5 @@ Definition others :=
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
    boxed, no_star_is_flat, near_branch, near_solution, passed,
    open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
-   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch).
+   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch, gap).
 Print Assumptions others.

@@ -69,6 +69,19 @@ Proof.
   rewrite Pair by assumption. apply sum_ext. intros. ring.
 Qed.
 
+(** So they determine the unknowns stably. *)
+Lemma left_bound {A} (E : list A) I (L : A -> vec -> R) : NoDup I -> (forall e, linear (L e)) ->
+  (forall w, zero_off I w -> (forall e, In e E -> L e w = 0) -> w = zero) ->
+  exists C, 0 <= C /\ forall w r, zero_off I w -> (forall e, In e E -> Rabs (L e w) <= r) -> norm I w <= C * r.
+Proof.
+  intros D Lin Inj. destruct (left_inverse E I L D Lin Inj) as (Z & HZ).
+  exists (sum I (fun i => sum E (fun e => Rabs (Z i e)))). split.
+  { apply sum_nonneg. intros. apply sum_nonneg. intros. apply Rabs_pos. }
+  intros w r Zw B. unfold norm. rewrite Rmult_comm, <- sum_scal. apply sum_le. intros i Hi.
+  rewrite <- (HZ i w Hi Zw), <- sum_scal. eapply Rle_trans; [apply sum_abs|]. apply sum_le. intros e He.
+  rewrite Rabs_mult, Rmult_comm. apply Rmult_le_compat_r; [apply Rabs_pos|auto].
+Qed.
+
 (** ** As many equations as unknowns, with the derivative Id at s = 0 *)
 
 Section Square.

@@ -54,6 +54,11 @@ ASSUMED = {
     "exact_notched_verified": CLASSICAL,
     "disk_moves": REALS,
     "curve": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "motion": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "true_motion_exists": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "ways": CLASSICAL,
+    "near_flat": CLASSICAL,
+    "all_continue": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

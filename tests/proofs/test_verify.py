@@ -78,6 +78,9 @@ def test_both_checkers_agree_on_every_fixture(verifier: Path) -> None:
             assert "by theorem disk_moves" in text
             if path in COMPACT:
                 assert f"exactly {claims['distinct']} branches" in text
+                plain = "By theorem all_verified" in text
+                assert ("by theorem all_continue" in text) == plain
+                assert ("not verified here: that every branch continues" in text) != plain
         else:
             assert code == 3, (path.name, text)
             assert "only version 1 of" in text, (path.name, text)
