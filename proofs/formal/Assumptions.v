@@ -30,6 +30,7 @@ Print Assumptions true_motion_exists.
 Print Assumptions ways.
 Print Assumptions near_flat.
 Print Assumptions all_continue.
+Print Assumptions one_continues.
 
 (** The others together. *)
 Definition others :=

@@ -310,3 +310,22 @@ Proof.
     intros E. apply N. now apply eq_IZR.
   - intros h Hh v Hv Fl. exact (jacobian_singular _ h v Hv Fl (Non h (proj2 (Rep h) Hh))).
 Qed.
+
+(** What the program accepts as a file of one branch with signs at all vertices, and as a disk. *)
+Theorem one_continues d p up h asked ms : verify_one d p up h asked = true -> forallb (is_bent asked) (hubs p) = true ->
+  moves_as_a_disk d (inside d) (triangles d) ms = true ->
+  exists ok : check d = true, let S := sheet_of d ok in let vertices := inner S ++ rim S in
+  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ in_nappes S up g /\
+    forall b1 b2, In b1 vertices -> In b2 vertices -> at_ S b1 <> at_ S b2 ->
+      exists t1 delta C P z, true_motion S (inner S) vertices (faces S) b1 b2 g t1 delta C P z.
+Proof.
+  unfold verify_one. rewrite andb_true_iff, forallb_forall. intros (So & Pass) Bent M.
+  destruct (sound_means d p So) as (ok & Hubs & H). destruct (H _ _ _ _ Pass) as (_ & g & Gr & Gs & Gn & Sg & _).
+  unfold moves_as_a_disk in M. apply andb_prop in M. exists ok. cbv zeta. exists g.
+  split; [exact Gr|]. split; [exact Gs|]. split; [exact Gn|]. intros b1 b2 H1 H2 Apart.
+  apply true_motion_exists; try assumption; [exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
+  apply jacobian_nonsingular. intros v Hv. right. split; [now apply Gs|]. intros Fl.
+  assert (Hin : In v (map at_vertex (hubs p))) by (rewrite <- Hubs; exact Hv).
+  apply in_map_iff in Hin. destruct Hin as (b & <- & Hb). specialize (Sg b Hb (Bent b Hb)).
+  rewrite K2_sym, (flat_null _ _ g Hv Fl) in Sg. lra.
+Qed.

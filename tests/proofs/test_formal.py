@@ -59,6 +59,7 @@ ASSUMED = {
     "ways": CLASSICAL,
     "near_flat": CLASSICAL,
     "all_continue": CLASSICAL,
+    "one_continues": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

@@ -49,7 +49,10 @@ let near_branch t claimed h text zeros (top, below) =
   let near = corner = None && V.within p up given top below in
   if near then print_string "          It has the squared distance of the file, by theorem distance_verified.\n";
   stay_flat t;
-  meaning t;
+  let continue = meaning_of t && others = 0 in
+  if continue then print_string "          It continues to one true motion, with the boundary at multiples of these heights, by\n\
+    \          theorem one_continues.\n"
+  else not_verified "that it continues to a true motion";
   if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
   if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
   if not near then not_verified "the squared distance"
@@ -81,6 +84,7 @@ let exact_branch t claimed h text distance =
   Option.iter raised corner;
   stay_flat t;
   meaning t;
+  not_verified "that it continues to a true motion";
   if corner <> None then not_verified "the squared distance"
 
 let one_branch data =
