@@ -31,6 +31,7 @@ Print Assumptions ways.
 Print Assumptions near_flat.
 Print Assumptions all_continue.
 Print Assumptions one_continues.
+Print Assumptions exact_continues.
 
 (** The others together. *)
 Definition others :=

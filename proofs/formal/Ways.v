@@ -2,7 +2,7 @@
     lie on the motions that begin along the solutions of K_v = 0. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches
-  Drawing Integers Verify Curve Flex Displacements Motion Near Gap
+  Drawing Integers Verify Exact Curve Flex Displacements Motion Near Gap
   Placed.
 Import ListNotations.
 Open Scope R_scope.
@@ -328,4 +328,20 @@ Proof.
   assert (Hin : In v (map at_vertex (hubs p))) by (rewrite <- Hubs; exact Hv).
   apply in_map_iff in Hin. destruct Hin as (b & <- & Hb). specialize (Sg b Hb (Bent b Hb)).
   rewrite K2_sym, (flat_null _ _ g Hv Fl) in Sg. lra.
+Qed.
+
+(** The same of heights that solve the equations exactly. *)
+Theorem exact_continues d p claimed h letters ms : verify_exact d p (fun _ => false) claimed h letters = true ->
+  forallb (fun v => match claimed v with Some _ => true | None => false end) (inside d) = true ->
+  moves_as_a_disk d (inside d) (triangles d) ms = true ->
+  exists ok : check d = true, let S := sheet_of d ok in let vertices := inner S ++ rim S in
+  forall b1 b2, In b1 vertices -> In b2 vertices -> at_ S b1 <> at_ S b2 ->
+    exists t1 delta C P z, true_motion S (inner S) vertices (faces S) b1 b2 (reals h) t1 delta C P z.
+Proof.
+  rewrite forallb_forall. intros V Bent M. destruct (exact_verified _ _ _ _ _ _ V) as (ok & Gs & Sg & _).
+  unfold moves_as_a_disk in M. apply andb_prop in M. exists ok. cbv zeta. intros b1 b2 H1 H2 Apart.
+  apply true_motion_exists; try assumption; [exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
+  apply jacobian_nonsingular. intros v Hv. right. split; [now apply Gs|]. intros Fl.
+  specialize (Bent v Hv). destruct (claimed v) as [e|] eqn:E; [|discriminate]. specialize (Sg v e Hv E).
+  rewrite K2_sym, (flat_null _ _ (reals h) Hv Fl) in Sg. lra.
 Qed.
