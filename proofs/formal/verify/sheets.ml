@@ -47,7 +47,8 @@ let place_of file triangles =
 let shown_sheet t =
   Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
     (plural (Array.length t.file.points) "vertex") (Array.length t.inside + List.length t.hidden) t.rim
-    (plural (List.length t.file.triangles) "triangle") (plural (Array.length (folds t.file)) "fold") t.file.digest
+    (plural (List.length t.file.triangles) "triangle") (plural (Array.length (folds t.file)) "fold") t.file.digest;
+  Drawing.compare_with t.file
 
 let check_sheet t =
   let opened = if t.corner = None then t.d.triangles else List.tl t.d.triangles in
