@@ -100,14 +100,7 @@ let all_branches header blocks claims =
       unverified "the chart does not name the side on which vertex %d pops up when a triangle closes the notch" r
   | _ -> ());
   let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
-  let claim key = match entry key claims with
-    | Number n -> Z.to_string (digits key n)
-    | _ -> refuse "%s is no number" key in
-  List.iter (fun (key, expected) -> agrees key (claim key) expected)
-    [ ("interior", string_of_int (size + List.length t.hidden)); ("boundary", "4");
-      ("folds", string_of_int (Array.length (Reading.folds file))); ("degrees_of_freedom", "1"); ("distinct", count);
-      ("with_multiplicity", Z.to_string (Z.shift_left Z.one (size + List.length t.hidden))); ("real", count); ("nonreal", "0") ];
-  agrees "sha256" (string "sha256" (entry "sha256" claims)) file.digest;
+  check_claims t claims count;
   let continued = string "true_branches" (entry "true_branches" claims) in
   if continued <> "proved" then invalid "the claim \"true_branches\" is not \"proved\", as in every file of this version";
   let blocks = Array.of_list blocks in
@@ -192,23 +185,8 @@ let all_branches header blocks claims =
 
 (* --- files --- *)
 
-let other format version why = refuse "the file is \"%s\", version %s%s; only version 1 of \"exactfold compact \
-  certificate\" and of \"exactfold branch\" are verified here" format version why
-
-(* Why a file of version 2 is outside: each vertex inside a triangulated triangle doubles the multiplicity, and what is
-   left above 1 is claimed of roots at which other stars are flat. *)
-let outside header claims =
-  let evidence = entry "evidence" header in
-  let number key = match entry key claims with Number n -> digits key n | _ -> refuse "%s is no number" key in
-  let inside = match evidence with
-    | Entries pairs when List.mem_assoc "triangles" pairs ->
-      List.concat_map (fun j -> items "inside" (entry "inside" j)) (items "triangles" (entry "triangles" evidence))
-    | _ -> [] in
-  if Z.lt (Z.shift_left (number "distinct") (List.length inside)) (number "with_multiplicity") then
-    ", which claims multiple roots, at which stars are flat: the theorem counts branches only where no star is flat"
-  else if not (Z.equal (number "boundary") (Z.of_int 4)) then
-    Printf.sprintf ", of a sheet with %s boundary vertices, not four" (Z.to_string (number "boundary"))
-  else ", which has an entry for each root of any kind"
+let other format version why = refuse "the file is \"%s\", version %s%s; only \"exactfold compact certificate\", version 2 of \
+  \"exactfold certificate\" and version 1 of \"exactfold branch\" are verified here" format version why
 
 let verify path =
   let text = file path in
@@ -225,16 +203,17 @@ let verify path =
       let claims () = match parse (List.hd reversed) with
         | Entries [ ("claims", c) ] -> c
         | _ -> invalid "the file is UNFINISHED: its last line has no claims" in
-      let claims = match kind header with
-        | "exactfold compact certificate", "1" -> claims ()
-        | ("exactfold compact certificate" as format), "2" -> other format "2" (outside header (claims ()))
+      let all = match kind header with
+        | "exactfold compact certificate", "1" -> all_branches
+        | "exactfold compact certificate", "2" -> Listing.of_lines
         | format, version -> other format version "" in
-      all_branches header (List.rev (List.tl reversed)) claims
+      all header (List.rev (List.tl reversed)) (claims ())
     | _ -> invalid "the file is UNFINISHED: it has no blocks"
   else begin
     let data = parse text in
     match kind data with
     | "exactfold branch", "1" -> Branch.one_branch data
+    | "exactfold certificate", "2" -> Listing.of_object data
     | ("exactfold branch" as format), "2" -> other format "2" ", of a sheet with angle deficits"
     | ("exactfold branch" as format), "3" -> other format "3" ", with merged faces"
     | format, version -> other format version ""

@@ -1,0 +1,106 @@
+(* Certificates that list all branches, flat stars and multiplicities among them (version 2). *)
+
+open Reading
+open Sheets
+module V = Verified
+
+let branch_keys = "vertex_signs assignment multiplicity representative"
+
+(* What is claimed of a branch. *)
+let claimed_of t number j =
+  let signs = string "vertex_signs" (entry "vertex_signs" j) in
+  let sign k = match signs.[k] with
+    | '+' -> 1 | '-' -> -1 | '0' -> 0 | c -> refuse "branch %d has a vertex with the sign %c" number c in
+  let claimed = own_signs t (Array.init (String.length signs) sign) in
+  let text = own_letters t (string "assignment" (entry "assignment" j)) in
+  if string "representative" (entry "representative" j) <> "saddle" then
+    invalid "branch %d: its positive saddle is shown" number;
+  (claimed, text, small "multiplicity" (entry "multiplicity" j))
+
+let all_roots header evidence entries claims =
+  only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches branches" claims;
+  ignore (entry "provenance" header);
+  let classes = match string "kind" (entry "kind" evidence) with
+    | "isolated" -> only "kind triangles chart roots block" evidence; Items []
+    | "algebraic" -> only "kind triangles chart multipliers separating classes roots block" evidence; entry "classes" evidence
+    | kind -> refuse "the evidence is \"%s\", not a list of roots" kind in
+  let file = sheet (entry "pattern" header) in
+  let triangles = items "triangles" (entry "triangles" evidence) in
+  let t = place_of file (List.map (triangulated file true) triangles) in
+  let { d; p; inside; _ } = t in
+  let size = Array.length inside in
+  if t.rim <> 4 then refuse "the sheet has %d boundary vertices, not four" t.rim;
+  if t.corner <> None then refuse "a corner is reflex: of version 2 only convex sheets are verified here";
+  if entry "chart" evidence <> Null then refuse "the chart is one of a sheet with a reflex corner";
+  if size > 30 || size + List.length t.hidden > 60 then refuse "%d vertices inside are too many" size;
+  shown_sheet t;
+  check_sheet t;
+  check_claims t claims (string_of_int (List.length entries));
+  let last = List.nth d.border 3 in
+  let slot = Array.make (Array.length file.points) (-1) in
+  List.iteri (fun k v -> slot.(v) <- k) d.inside;
+  let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) in
+  let undecided = ref 0 in
+  let root number (j, branch) =
+    let claimed, text, times = claimed_of t number branch in
+    let flat = List.filter (fun v -> Hashtbl.find claimed v = 0) (Array.to_list inside) in
+    let signs_of v = match Hashtbl.find claimed v with 0 -> None | s -> Some (s > 0) in
+    let letters decided k = match text.[k] with
+      | 'F' -> if decided then Some None else None
+      | _ -> Option.map (fun w -> Some w) (letter_of number text k) in
+    let made (top, found) = let decided = match found with V.Near _ -> false | V.Within _ -> true in
+      { V.signs_of; letters_of = letters decided; times; top; found } in
+    let near = Spaces.read size classes p inside last j in
+    let accepts e = V.root_ok d p t.parts last (made e) in
+    match Spaces.evidence d p lights inside last flat (fun k -> text.[k] = 'F') near accepts with
+    | Some (top, found) ->
+      (match found with V.Near _ -> undecided := !undecided + flats text | V.Within _ -> ());
+      made (top, found)
+    | None -> unverified "branch %d did not pass the test" number in
+  let roots = List.mapi root entries in
+  let common = List.map (fun (a, b, c) -> ((a, b), c)) t.common in
+  if not (V.verify_listed d p common t.parts roots) then
+    unverified "some sign vector agrees with none of the branches, or with several";
+  let simple = List.for_all (fun (r : V.root) -> List.for_all (fun v -> r.signs_of v <> None) d.inside) roots in
+  let continued = string "true_branches" (entry "true_branches" claims) in
+  agrees "true_branches" continued (if simple then "proved" else "undecided");
+  Printf.printf "VERIFIED  exactly %s to second order, complex ones included; all are real and different.\n\
+    \          They have the signs, flat vertices and letters M and V of the file. Each sign vector agrees with one;\n\
+    \          the multiplicity of the file is how many agree with a branch. By theorem listed_verified.\n"
+    (plural (List.length roots) "branch");
+  stay_flat t;
+  meaning t;
+  if !undecided > 0 then not_verified (Printf.sprintf "%s F" (plural !undecided "letter"));
+  if simple then not_verified "that every branch continues to a true motion"
+
+(* The entries of the blocks, each with its root and what is claimed of it. *)
+let in_blocks evidence blocks =
+  match evidence with
+  | Entries pairs when List.mem_assoc "roots" pairs ->
+    let number = small "roots" (entry "roots" evidence) and block = small ~least:1 "block" (entry "block" evidence) in
+    if List.length blocks <> (number + block - 1) / block then invalid "the number of blocks is wrong";
+    let read k text =
+      let j = parse text in
+      only "block roots" j;
+      if small "block" (entry "block" j) <> k then invalid "block %d is expected" k;
+      let roots = items "roots" (entry "roots" j) in
+      if List.length roots <> min block (number - (k * block)) then invalid "block %d has another number of roots" k;
+      List.map (fun e -> only ("root " ^ branch_keys) e; (entry "root" e, e)) roots in
+    List.concat (List.mapi read blocks)
+  | _ -> []
+
+let of_lines header blocks claims =
+  only "format version pattern evidence provenance" header;
+  let evidence = entry "evidence" header in
+  all_roots header evidence (in_blocks evidence blocks) claims
+
+let of_object data =
+  only "format version pattern claims evidence provenance" data;
+  let evidence = entry "evidence" data and claims = entry "claims" data in
+  let roots = match evidence with
+    | Entries pairs when List.mem_assoc "roots" pairs -> items "roots" (entry "roots" evidence)
+    | _ -> [] in
+  let branches = items "branches" (entry "branches" claims) in
+  if List.length roots <> List.length branches then invalid "the numbers of roots and of branches differ";
+  List.iter (only branch_keys) branches;
+  all_roots data evidence (List.combine roots branches) claims

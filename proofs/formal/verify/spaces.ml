@@ -1,0 +1,242 @@
+(* What the verified program is given for the branches of a listing: approximate heights, exact ones, or a space with a
+   solution. As in proposing.ml nothing here is trusted: wrong numbers can only make the verified program refuse. *)
+
+open Reading
+module V = Verified
+
+(* --- linear algebra over the rational numbers --- *)
+
+let dot u x = let s = ref Q.zero in Array.iteri (fun k a -> if Q.sign a <> 0 then s := Q.add !s (Q.mul a x.(k))) u; !s
+let less row f other = Array.map2 (fun x y -> Q.sub x (Q.mul f y)) row other
+
+(* The reduced echelon form: rows with the places of their leading ones, which lie in the first [width] columns. *)
+let echelon width rows =
+  let add found row =
+    let row = List.fold_left (fun row (k, r) -> less row row.(k) r) row found in
+    let rec lead k = if k = width then None else if Q.sign row.(k) <> 0 then Some k else lead (k + 1) in
+    match lead 0 with
+    | None -> found
+    | Some k ->
+      let row = Array.map (fun x -> Q.div x row.(k)) row in
+      (k, row) :: List.map (fun (j, r) -> (j, less r r.(k) row)) found in
+  List.sort compare (List.map fst (List.fold_left add [] rows)) |> fun places ->
+  let found = List.fold_left add [] rows in
+  List.map (fun k -> (k, List.assoc k found)) places
+
+let unit_row n k = Array.init n (fun j -> if j = k then Q.one else Q.zero)
+
+(* The inverse of a matrix, if it has one. *)
+let inverted a =
+  let n = Array.length a in
+  let rows = List.mapi (fun i row -> Array.append row (unit_row n i)) (Array.to_list a) in
+  let found = echelon n rows in
+  if List.length found < n then None else Some (Array.of_list (List.map (fun (_, r) -> Array.sub r n n) found))
+
+(* --- roots of the file --- *)
+
+(* Heights inside where the last corner has height 1, whether they may be exact, and other spaces in which they lie. *)
+type near = { heights : Q.t array; exact : bool; others : (Q.t array * Q.t array list) list }
+
+let fraction what j = let p, q = rational what j in Q.make p q
+let polynomial j = Array.of_list (List.map (fraction "a coefficient") (items "a polynomial" j))
+let value f x = Array.fold_right (fun c s -> Q.add c (Q.mul x s)) f Q.zero
+let slope f = Array.init (max 0 (Array.length f - 1)) (fun k -> Q.mul (Q.of_int (k + 1)) f.(k + 1))
+let coefficient f k = if k < Array.length f then f.(k) else Q.zero
+
+(* A root in an interval in which the polynomial changes its sign, to 100 digits and more. *)
+let rec narrowed f low high steps =
+  let middle = Q.div (Q.add low high) (Q.of_int 2) in
+  if Q.equal low high || steps = 0 then middle
+  else
+    let at = Q.sign (value f middle) in
+    if at = 0 then middle
+    else if at = Q.sign (value f low) then narrowed f middle high (steps - 1) else narrowed f low middle (steps - 1)
+
+let centre size j =
+  let bits = small ~most:(1 lsl 14) "bits" (entry "bits" j) in
+  ignore (whole "radius" (entry "radius" j));
+  let given = List.map (whole "center") (items "center" (entry "center" j)) in
+  if List.length given <> size then refuse "a root has another number of heights";
+  Array.of_list (List.map (fun c -> Q.make c (Z.shift_left Z.one bits)) given)
+
+let of_class size classes j =
+  only "class interval" j;
+  let classes = Array.of_list (items "classes" classes) in
+  let own = classes.(small ~most:(Array.length classes - 1) "class" (entry "class" j)) in
+  only "polynomial numerators flat" own;
+  let p = polynomial (entry "polynomial" own) in
+  let w = Array.of_list (List.map polynomial (items "numerators" (entry "numerators" own))) in
+  let d = slope p in
+  if Array.length w <> size || Array.length p < 2 then refuse "a class has another number of heights";
+  match List.map (fraction "an end") (items "interval" (entry "interval" j)) with
+  | [ low; high ] ->
+    let t = narrowed p low high (if Q.equal low high then 0 else 400) in
+    let below = value d t in
+    if Q.sign below = 0 then refuse "a class polynomial has a double root";
+    let last = Array.length d - 1 in
+    (* x is the sum of t^k / p'(t) times the coefficients of the numerators, 1 that times those of p' *)
+    let origin = Array.map (fun f -> Q.div (coefficient f last) d.(last)) w in
+    let direction k = Array.map (fun f -> Q.sub (coefficient f k) (Q.mul d.(k) (Q.div (coefficient f last) d.(last)))) w in
+    { heights = Array.map (fun f -> Q.div (value f t) below) w; exact = Q.sign (value p t) = 0;
+      others = [ (origin, List.init last direction) ] }
+  | _ -> refuse "an interval has not two ends"
+
+(* --- spaces --- *)
+
+let fixed v = fun u -> if u = v then Z.one else Z.zero
+
+(* The heights at which some folds are flat: a point and directions. *)
+let flat_space (p : V.prepared) inside last is_flat =
+  let n = Array.length inside in
+  let row (f : V.fold_form) = Array.init (n + 1) (fun k ->
+    Q.of_bigint (V.bent (fixed (if k = n then last else inside.(k))) f)) in
+  let found = echelon (n + 1) (List.map row (List.filter is_flat p.folds)) in
+  if List.mem_assoc n found then refuse "no heights in the chart have the flat folds";
+  let free = List.filter (fun k -> not (List.mem_assoc k found)) (List.init n Fun.id) in
+  let at k j = match List.assoc_opt k found with Some r -> Q.neg r.(j) | None -> if k = j then Q.one else Q.zero in
+  (Array.init n (fun k -> at k n), List.map (fun j -> Array.init n (fun k -> at k j)) free)
+
+let touches flat (f : V.fold_form) = let ((i, j), _), _ = f.ends in List.mem i flat || List.mem j flat
+
+let read size classes (p : V.prepared) inside last j =
+  let has key = match j with Entries pairs -> List.mem_assoc key pairs | _ -> refuse "a root is not an object" in
+  if has "class" then of_class size classes j
+  else if has "flat" then begin
+    only "center radius bits flat" j;
+    let flat = List.map (small "a flat vertex") (items "flat" (entry "flat" j)) in
+    let origin, directions = flat_space p inside last (touches flat) in
+    let y = centre (List.length directions) j in
+    let add (x, k) a = (less x (Q.neg y.(k)) a, k + 1) in
+    { heights = fst (List.fold_left add (origin, 0) directions); exact = false; others = [] }
+  end
+  else begin
+    only "center radius bits" j;
+    { heights = centre size j; exact = true; others = [] }
+  end
+
+let two = Z.of_int 2
+let rounded x = Z.fdiv (Z.add (Z.mul two (Q.num x)) (Q.den x)) (Z.mul two (Q.den x))
+let scaled x bits = rounded (Q.mul_2exp x bits)
+
+let placed inside xs = fun u ->
+  let found = ref Z.zero in Array.iteri (fun k v -> if v = u then found := xs.(k)) inside; !found
+
+let point base : V.space =
+  let zero _ = Z.zero in
+  { chosen = (fun _ -> false); base; column = (fun _ -> zero); centre = zero; half = Z.zero;
+    inverse = (fun _ -> zero); over = Z.one; bound0 = Z.zero; bound1 = Z.zero; bound2 = Z.zero;
+    combination = fun _ -> (Z.one, zero) }
+
+(* The height of the last corner, and exact heights. *)
+let exactly inside xs =
+  let top = Array.fold_left (fun n x -> Z.lcm n (Q.den x)) Z.one xs in
+  let whole = Array.map (fun x -> Q.num (Q.mul (Q.of_bigint top) x)) xs in
+  (top, V.Within (point (placed inside whole)))
+
+let largest = List.fold_left Z.max Z.zero
+let total l f = List.fold_left (fun s x -> Z.add s (f x)) Z.zero l
+
+(* A space with as many unknowns as independent curvatures, with a box around the heights; [bits] are digits. *)
+let within (d : V.drawing) (p : V.prepared) inside last flat (origin, directions) xs bits =
+  let n = Array.length inside in
+  let reduced = echelon n directions in
+  let origin = List.fold_left (fun o (k, r) -> less o o.(k) r) origin reduced in
+  let unit = List.fold_left (fun m row -> Array.fold_left (fun m x -> Z.lcm m (Q.den x)) m row) Z.one
+    (origin :: List.map snd reduced) in
+  let whole row = Array.map (fun x -> Q.num (Q.mul (Q.of_bigint unit) x)) row in
+  let columns = List.map (fun (_, r) -> placed inside (whole r)) reduced in
+  let start times = let base = placed inside (whole origin) in
+    fun u -> Z.mul times (if u = last then unit else base u) in
+  let spanning = start Z.one :: columns in
+  let hubs = List.filter (fun (b : V.hub) -> not (List.mem b.at_vertex flat)) p.hubs in
+  let pairs = List.concat_map (fun g -> List.map (fun h -> (g, h)) spanning) spanning in
+  let row b = Array.of_list (List.map (fun (g, h) -> Q.of_bigint (V.polar b g h)) pairs) in
+  let rows = List.map (fun b -> (b, row b)) hubs in
+  let width = List.length pairs and size = List.length columns in
+  let choose chosen (b, r) =
+    let more = chosen @ [ (b, r) ] in
+    if List.length (echelon width (List.map snd more)) = List.length more then more else chosen in
+  let chosen = List.fold_left choose [] rows in
+  if List.length chosen <> size then None
+  else begin
+    let parts = List.map fst chosen in
+    let names = List.map (fun (b : V.hub) -> b.at_vertex) parts in
+    let column v = match List.find_opt (fun (w, _) -> w = v) (List.combine names columns) with
+      | Some (_, c) -> c | None -> fun _ -> Z.zero in
+    (* the weights in the combination: the transposed system, solved with the row as right-hand side *)
+    let combination v =
+      let own = List.assoc v (List.map (fun ((b : V.hub), r) -> (b.at_vertex, r)) rows) in
+      let line k = Array.of_list (List.map (fun (_, r) -> r.(k)) chosen @ [ own.(k) ]) in
+      let solved = echelon size (List.init width line) in
+      let weights = List.map (fun (_, r) -> r.(size)) solved in
+      let times = List.fold_left (fun m x -> Z.lcm m (Q.den x)) Z.one weights in
+      let whole = List.combine names (List.map (fun x -> Q.num (Q.mul (Q.of_bigint times) x)) weights) in
+      (times, fun u -> Option.value (List.assoc_opt u whole) ~default:Z.zero) in
+    let known = List.map (fun (b : V.hub) -> (b.at_vertex,
+      if List.mem b.at_vertex names then (Z.one, fun _ -> Z.zero) else combination b.at_vertex)) hubs in
+    let times = Z.shift_left Z.one bits in
+    let m = Array.of_list (List.map (fun (k, _) -> scaled xs.(k) bits) reduced) in
+    let start = start times in
+    let middle () =
+      let h = Hashtbl.create 16 in
+      Array.iter (fun u -> Hashtbl.replace h u (Z.add (start u)
+        (total (List.mapi (fun k c -> (k, c)) columns) (fun (k, c) -> Z.mul m.(k) (c u))))) inside;
+      fun u -> match Hashtbl.find_opt h u with Some x -> x | None -> start u in
+    let jacobian h = Array.of_list (List.map (fun b -> Array.of_list (List.map (fun c -> V.polar b h c) columns)) parts) in
+    let inverse h =
+      let a = jacobian h in
+      let most = Array.fold_left (fun s row -> Array.fold_left (fun s x -> Z.max s (Z.abs x)) s row) Z.one a in
+      let over = Z.shift_left Z.one (Z.numbits most + 64) in
+      Option.map (fun y -> (over, Array.map (Array.map (fun x -> rounded (Q.mul (Q.of_bigint over) x))) y))
+        (inverted (Array.map (Array.map Q.of_bigint) a)) in
+    let residual y h i = total (List.mapi (fun k b -> (k, b)) parts) (fun (k, b) -> Z.mul y.(i).(k) (V.curved b h)) in
+    let rec improve steps =
+      match inverse (middle ()) with
+      | None -> None
+      | Some (over, y) when steps = 0 -> Some (over, y)
+      | Some (over, y) ->
+        let h = middle () in
+        let moves = Array.init size (fun i -> rounded (Q.make (residual y h i) over)) in
+        Array.iteri (fun i x -> m.(i) <- Z.sub m.(i) x) moves;
+        improve (steps - 1) in
+    match improve 6 with
+    | None -> None
+    | Some (over, y) ->
+      let h = middle () and index = List.init size Fun.id in
+      let weighted i f = total (List.mapi (fun k b -> (k, b)) parts) (fun (k, b) -> Z.mul y.(i).(k) (f b)) in
+      let bound0 = largest (List.map (fun i -> Z.abs (residual y h i)) index) in
+      let bound1 = largest (List.map (fun i -> total (List.mapi (fun j c -> (j, c)) columns) (fun (j, c) ->
+        Z.abs (Z.sub (if i = j then over else Z.zero) (weighted i (fun b -> V.polar b h c))))) index) in
+      let bound2 = largest (List.map (fun i -> total columns (fun c -> total columns (fun c' ->
+        Z.abs (weighted i (fun b -> V.polar b c c'))))) index) in
+      let half = Z.add two (Z.mul two (Z.cdiv bound0 over)) in
+      let place v = let rec go k = function [] -> 0 | w :: l -> if w = v then k else go (k + 1) l in go 0 names in
+      Some (start last, V.Within { chosen = (fun v -> List.mem v names); base = start; column;
+        centre = (fun v -> m.(place v)); half; inverse = (fun v w -> y.(place v).(place w)); over; bound0; bound1; bound2;
+        combination = fun v -> Option.value (List.assoc_opt v known) ~default:(Z.one, fun _ -> Z.zero) })
+  end
+
+(* --- evidence for a branch --- *)
+
+let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
+
+(* The evidence that the test accepts, if some is found; [flat] are the vertices with the sign 0, [straight] the folds with
+   the letter F. *)
+let evidence (d : V.drawing) (p : V.prepared) lights inside last flat straight near accepts =
+  let first found attempt = match found with Some _ -> found | None -> Option.bind (attempt ()) (fun e ->
+    if accepts e then Some e else None) in
+  let exact () = if near.exact then Some (exactly inside near.heights) else None in
+  let close bits () =
+    let h = Array.make (List.length d.points) Z.zero in
+    Array.iteri (fun k v -> h.(v) <- scaled near.heights.(k) bits) inside;
+    h.(last) <- Z.shift_left Z.one bits;
+    for _ = 0 to (bits - 40) / 40 do Proposing.step lights None h bits (bits - 14) done;
+    Some (h.(last), V.Near (fun u -> h.(u))) in
+  let is_straight (f : V.fold_form) = straight f.name || touches flat f in
+  let space make bits () = within d p inside last flat (make ()) near.heights bits in
+  let spaces make = List.map (space make) [ 64; 128; 256; 512 ] in
+  let straightened = if List.exists is_straight p.folds then spaces (fun () -> flat_space p inside last is_straight) else [] in
+  let rest = if flat = [] then List.map close precisions
+    else spaces (fun () -> flat_space p inside last (touches flat))
+      @ List.concat_map (fun s -> spaces (fun () -> s)) near.others in
+  List.fold_left first None (exact :: straightened @ rest)
