@@ -52,6 +52,7 @@ ASSUMED = {
     "all_notched_emptied_verified": CLASSICAL,
     "exact_verified": CLASSICAL,
     "exact_notched_verified": CLASSICAL,
+    "listed_verified": CLASSICAL,
     "disk_moves": REALS,
     "others": CLASSICAL,
 }

@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 from compact_files import Lines, bodies, chained, chained_texts, listed_exactly, put, raw
 from compare_checkers import compare, mutate
+from verifying import run, valid
 
-from exactfold import checker
 from exactfold.branches import branch_certificate, find_branch
 from exactfold.branches.counting.stream import stream_branches
 from exactfold.pattern.crease_pattern import CreasePattern
@@ -25,8 +25,17 @@ SOURCES = ROOT / "proofs" / "formal" / "verify"
 CERTIFICATES = ROOT / "tests" / "fixtures" / "certificates"
 COMPACT = sorted(CERTIFICATES.glob("compact-*.txt"))
 BRANCHES = sorted(CERTIFICATES.glob("branch-*.json"))
-SIMPLE = {"chord", "groebner", "rigid", "single-vertex"}
-"""Certificates of version 2 on which no star outside of triangulated triangles is flat."""
+LISTED = [*sorted(CERTIFICATES.glob("listing-*.json")), *sorted(CERTIFICATES.glob("algebraic-*.json"))]
+LISTED += [*sorted(CERTIFICATES.glob("rigid-*.json")), *sorted(CERTIFICATES.glob("single-*.json"))]
+NAMED = {
+    "only version 1 of": {"branch-deficits", "branch-deficits-triangles", "branch-merged"},
+    "a corner is reflex: of version 2 only convex": {
+        *("compact-roots-either-side", "compact-roots-reflex", "listing-dart", "listing-notched"),
+        *(f"listing-reflex{name}" for name in ("", "-chord", "-either-side", "-triangle")),
+        *(f"algebraic-{name}" for name in ("either-side", "either-side-both", "reflex")),
+        "algebraic-either-side-groebner",
+    },
+}
 CONVEX = CERTIFICATES / "compact-convex.txt"
 TRIANGLES = CERTIFICATES / "compact-triangles.txt"
 RANDOM = CERTIFICATES / "branch-random.json"
@@ -38,19 +47,6 @@ NOTCHED = CreasePattern(
     ],
 )
 """A sheet with four corners, of which vertex 7 is reflex, and four vertices inside."""
-
-
-def run(program: Path, certificate: Path) -> tuple[int, str]:
-    done = subprocess.run([program, certificate], capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
-
-
-def valid(path: Path) -> dict[str, Any] | None:
-    """The claims that the checker in Python verifies, if it does."""
-    try:
-        return dict(checker.verify(str(path)))
-    except (checker.CertificateError, checker.FormatError):
-        return None
 
 
 def test_the_page_says_how_long_what_has_to_be_believed_is() -> None:

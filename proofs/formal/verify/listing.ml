@@ -17,27 +17,11 @@ let claimed_of t number j =
     invalid "branch %d: its positive saddle is shown" number;
   (claimed, text, small "multiplicity" (entry "multiplicity" j))
 
-let all_roots header evidence entries claims =
-  only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches branches" claims;
-  ignore (entry "provenance" header);
-  let classes = match string "kind" (entry "kind" evidence) with
-    | "isolated" -> only "kind triangles chart roots block" evidence; Items []
-    | "algebraic" -> only "kind triangles chart multipliers separating classes roots block" evidence; entry "classes" evidence
-    | kind -> refuse "the evidence is \"%s\", not a list of roots" kind in
-  let file = sheet (entry "pattern" header) in
-  let triangles = items "triangles" (entry "triangles" evidence) in
-  let t = place_of file (List.map (triangulated file true) triangles) in
+(* The branches with evidence that is found for them, and how many letters F it does not decide. *)
+let roots_of t classes entries =
   let { d; p; inside; _ } = t in
-  let size = Array.length inside in
-  if t.rim <> 4 then refuse "the sheet has %d boundary vertices, not four" t.rim;
-  if t.corner <> None then refuse "a corner is reflex: of version 2 only convex sheets are verified here";
-  if entry "chart" evidence <> Null then refuse "the chart is one of a sheet with a reflex corner";
-  if size > 30 || size + List.length t.hidden > 60 then refuse "%d vertices inside are too many" size;
-  shown_sheet t;
-  check_sheet t;
-  check_claims t claims (string_of_int (List.length entries));
   let last = List.nth d.border 3 in
-  let slot = Array.make (Array.length file.points) (-1) in
+  let slot = Array.make (Array.length t.file.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
   let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) in
   let undecided = ref 0 in
@@ -50,7 +34,7 @@ let all_roots header evidence entries claims =
       | _ -> Option.map (fun w -> Some w) (letter_of number text k) in
     let made (top, found) = let decided = match found with V.Near _ -> false | V.Within _ -> true in
       { V.signs_of; letters_of = letters decided; times; top; found } in
-    let near = Spaces.read size classes p inside last j in
+    let near = Spaces.read (Array.length inside) classes p inside last j in
     let accepts e = V.root_ok d p t.parts last (made e) in
     match Spaces.evidence d p lights inside last flat (fun k -> text.[k] = 'F') near accepts with
     | Some (top, found) ->
@@ -58,6 +42,33 @@ let all_roots header evidence entries claims =
       made (top, found)
     | None -> unverified "branch %d did not pass the test" number in
   let roots = List.mapi root entries in
+  (roots, !undecided)
+
+(* The sheet of a listing, and the classes in its evidence. *)
+let opened header evidence =
+  ignore (entry "provenance" header);
+  let classes = match string "kind" (entry "kind" evidence) with
+    | "isolated" -> only "kind triangles chart roots block" evidence; Items []
+    | "algebraic" -> only "kind triangles chart multipliers separating classes roots block" evidence; entry "classes" evidence
+    | kind -> refuse "the evidence is \"%s\", not a list of roots" kind in
+  let file = sheet (entry "pattern" header) in
+  let triangles = items "triangles" (entry "triangles" evidence) in
+  let t = place_of file (List.map (triangulated file true) triangles) in
+  let size = Array.length t.inside in
+  if t.rim <> 4 then refuse "the sheet has %d boundary vertices, not four" t.rim;
+  if t.corner <> None then refuse "a corner is reflex: of version 2 only convex sheets are verified here";
+  if entry "chart" evidence <> Null then refuse "the chart is one of a sheet with a reflex corner";
+  if size > 30 || size + List.length t.hidden > 60 then refuse "%d vertices inside are too many" size;
+  (t, classes)
+
+let all_roots header entries claims =
+  only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches branches" claims;
+  let t, classes = opened header (entry "evidence" header) in
+  let { d; p; _ } = t in
+  shown_sheet t;
+  check_sheet t;
+  check_claims t claims (string_of_int (List.length entries));
+  let roots, undecided = roots_of t classes entries in
   let common = List.map (fun (a, b, c) -> ((a, b), c)) t.common in
   if not (V.verify_listed d p common t.parts roots) then
     unverified "some sign vector agrees with none of the branches, or with several";
@@ -70,7 +81,7 @@ let all_roots header evidence entries claims =
     (plural (List.length roots) "branch");
   stay_flat t;
   meaning t;
-  if !undecided > 0 then not_verified (Printf.sprintf "%s F" (plural !undecided "letter"));
+  if undecided > 0 then not_verified (Printf.sprintf "%s F" (plural undecided "letter"));
   if simple then not_verified "that every branch continues to a true motion"
 
 (* The entries of the blocks, each with its root and what is claimed of it. *)
@@ -91,16 +102,19 @@ let in_blocks evidence blocks =
 
 let of_lines header blocks claims =
   only "format version pattern evidence provenance" header;
-  let evidence = entry "evidence" header in
-  all_roots header evidence (in_blocks evidence blocks) claims
+  all_roots header (in_blocks (entry "evidence" header) blocks) claims
 
-let of_object data =
-  only "format version pattern claims evidence provenance" data;
-  let evidence = entry "evidence" data and claims = entry "claims" data in
+(* The entries of a listing in one object. *)
+let in_object data =
+  let evidence = entry "evidence" data in
   let roots = match evidence with
     | Entries pairs when List.mem_assoc "roots" pairs -> items "roots" (entry "roots" evidence)
     | _ -> [] in
-  let branches = items "branches" (entry "branches" claims) in
+  let branches = items "branches" (entry "branches" (entry "claims" data)) in
   if List.length roots <> List.length branches then invalid "the numbers of roots and of branches differ";
   List.iter (only branch_keys) branches;
-  all_roots data evidence (List.combine roots branches) claims
+  List.combine roots branches
+
+let of_object data =
+  only "format version pattern claims evidence provenance" data;
+  all_roots data (in_object data) (entry "claims" data)

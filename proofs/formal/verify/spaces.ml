@@ -67,7 +67,8 @@ let of_class size classes j =
   let p = polynomial (entry "polynomial" own) in
   let w = Array.of_list (List.map polynomial (items "numerators" (entry "numerators" own))) in
   let d = slope p in
-  if Array.length w <> size || Array.length p < 2 then refuse "a class has another number of heights";
+  if Array.length w <> size then refuse "a root has another number of heights";
+  if Array.length p < 2 || Q.sign p.(Array.length p - 1) = 0 then refuse "a class polynomial is constant, or its degree is less";
   match List.map (fraction "an end") (items "interval" (entry "interval" j)) with
   | [ low; high ] ->
     let t = narrowed p low high (if Q.equal low high then 0 else 400) in
@@ -137,7 +138,7 @@ let largest = List.fold_left Z.max Z.zero
 let total l f = List.fold_left (fun s x -> Z.add s (f x)) Z.zero l
 
 (* A space with as many unknowns as independent curvatures, with a box around the heights; [bits] are digits. *)
-let within (d : V.drawing) (p : V.prepared) inside last flat (origin, directions) xs bits =
+let within (p : V.prepared) inside last flat (origin, directions) xs =
   let n = Array.length inside in
   let reduced = echelon n directions in
   let origin = List.fold_left (fun o (k, r) -> less o o.(k) r) origin reduced in
@@ -157,7 +158,7 @@ let within (d : V.drawing) (p : V.prepared) inside last flat (origin, directions
     let more = chosen @ [ (b, r) ] in
     if List.length (echelon width (List.map snd more)) = List.length more then more else chosen in
   let chosen = List.fold_left choose [] rows in
-  if List.length chosen <> size then None
+  if List.length chosen <> size then fun _ -> None
   else begin
     let parts = List.map fst chosen in
     let names = List.map (fun (b : V.hub) -> b.at_vertex) parts in
@@ -174,6 +175,7 @@ let within (d : V.drawing) (p : V.prepared) inside last flat (origin, directions
       (times, fun u -> Option.value (List.assoc_opt u whole) ~default:Z.zero) in
     let known = List.map (fun (b : V.hub) -> (b.at_vertex,
       if List.mem b.at_vertex names then (Z.one, fun _ -> Z.zero) else combination b.at_vertex)) hubs in
+    fun bits ->
     let times = Z.shift_left Z.one bits in
     let m = Array.of_list (List.map (fun (k, _) -> scaled xs.(k) bits) reduced) in
     let start = start times in
@@ -233,10 +235,13 @@ let evidence (d : V.drawing) (p : V.prepared) lights inside last flat straight n
     for _ = 0 to (bits - 40) / 40 do Proposing.step lights None h bits (bits - 14) done;
     Some (h.(last), V.Near (fun u -> h.(u))) in
   let is_straight (f : V.fold_form) = straight f.name || touches flat f in
-  let space make bits () = within d p inside last flat (make ()) near.heights bits in
-  let spaces make = List.map (space make) [ 64; 128; 256; 512 ] in
+  let spaces make =
+    let space = lazy (match make () with
+      | exception Refused _ -> fun _ -> None
+      | space -> within p inside last flat space near.heights) in
+    List.map (fun bits () -> Lazy.force space bits) [ 64; 128; 256; 512 ] in
   let straightened = if List.exists is_straight p.folds then spaces (fun () -> flat_space p inside last is_straight) else [] in
-  let rest = if flat = [] then List.map close precisions
+  let rest = if flat = [] then List.map close precisions @ spaces (fun () -> flat_space p inside last (fun _ -> false))
     else spaces (fun () -> flat_space p inside last (touches flat))
       @ List.concat_map (fun s -> spaces (fun () -> s)) near.others in
   List.fold_left first None (exact :: straightened @ rest)
