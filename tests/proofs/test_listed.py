@@ -62,6 +62,7 @@ FORGERIES: list[tuple[str, Change]] = [
     (FAILED.format(0), at(0, assignment="MVVFVFMMMVVVF")),
     (FAILED.format(4), at(4, assignment="MFMFFFMFFFFFF")),
     (FAILED.format(4), at(4, assignment="FFFFFFMFFFFFF")),
+    ("branch 0 has a fold with the letter F that is not flat", at(0, assignment="FVVFVFMMMVVVF")),
     (FAILED.format(0), at(0, vertex_signs="+--0")),
     (FAILED.format(0), at(0, vertex_signs="0--0", multiplicity=4)),
     (FAILED.format(4), at(4, vertex_signs="++00", multiplicity=4)),

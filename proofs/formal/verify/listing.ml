@@ -5,6 +5,7 @@ open Sheets
 module V = Verified
 
 let branch_keys = "vertex_signs assignment multiplicity representative"
+let claim_keys = "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches"
 
 (* What is claimed of a branch. *)
 let claimed_of t number j =
@@ -38,8 +39,13 @@ let roots_of t classes entries =
     let accepts e = V.root_ok d p t.parts last (made e) in
     match Spaces.evidence d p lights inside last flat (fun k -> text.[k] = 'F') near accepts with
     | Some (top, found) ->
-      (match found with V.Near _ -> undecided := !undecided + flats text | V.Within _ -> ());
-      made (top, found)
+      let root = made (top, found) in
+      String.iteri (fun k c -> if c = 'F' && root.letters_of k = None then begin
+        incr undecided;
+        let bent w = V.root_ok d p t.parts last { root with letters_of = fun f -> if f = k then Some (Some w) else root.letters_of f } in
+        if bent true || bent false then invalid "branch %d has a fold with the letter F that is not flat" number
+      end) text;
+      root
     | None -> unverified "branch %d did not pass the test" number in
   let roots = List.mapi root entries in
   (roots, !undecided)
@@ -62,7 +68,6 @@ let opened header evidence =
   (t, classes)
 
 let all_roots header entries claims =
-  only "interior boundary folds degrees_of_freedom sha256 distinct with_multiplicity real nonreal true_branches branches" claims;
   let t, classes = opened header (entry "evidence" header) in
   let { d; p; _ } = t in
   shown_sheet t;
@@ -102,6 +107,7 @@ let in_blocks evidence blocks =
 
 let of_lines header blocks claims =
   only "format version pattern evidence provenance" header;
+  only claim_keys claims;
   all_roots header (in_blocks (entry "evidence" header) blocks) claims
 
 (* The entries of a listing in one object. *)
@@ -117,4 +123,5 @@ let in_object data =
 
 let of_object data =
   only "format version pattern claims evidence provenance" data;
+  only (claim_keys ^ " branches") (entry "claims" data);
   all_roots data (in_object data) (entry "claims" data)
