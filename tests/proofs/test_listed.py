@@ -188,9 +188,7 @@ def forger(formal: Path, verifier: Path, tmp_path_factory: pytest.TempPathFactor
     made = "integer verified sha256 reading proposing spaces sheets branch listing".split()
     command = ["ocamlfind", "ocamlopt", "-w", "-a", "-package", "zarith", "-linkpkg"]
     command += [f"{name}.cmx" for name in made] + [str(source), "-o", str(folder / "forged")]
-    done = subprocess.run(
-        command, cwd=verifier.parent, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run(command, cwd=verifier.parent, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return folder / "forged"
 
