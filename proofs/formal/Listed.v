@@ -11,12 +11,14 @@ Open Scope R_scope.
 Inductive evidence := Near (h : zheights) | Within (sp : space).
 
 (** What is claimed of a branch: signs, [None] where a star is flat; letters, [Some None] of a flat fold; the
-    multiplicity. [top] is the height of the last corner in the evidence. *)
+    multiplicity. [top] is the height of the last corner in the evidence; with a reflex corner [rise] is the sign of its
+    height, [Some None] if it is 0. *)
 Record root := Root {
   signs_of : nat -> option bool;
   letters_of : nat -> option letter;
   times : nat;
   top : Z;
+  rise : option letter;
   found : evidence
 }.
 
@@ -43,7 +45,7 @@ Definition root_ok (b4 : nat) (r : root) : bool :=
   Nat.eqb (times r) (2 ^ length (flats signs_of every_inside r)) && forallb (is_flat r) (flat_map hidden parts) &&
   match found r with
   | Near h => near_ok b4 r h
-  | Within sp => in_space d p b4 (top r) sp (signs_of r) (letters_of r)
+  | Within sp => (0 <? top r)%Z && in_space d p b4 (top r) sp (signs_of r) (letters_of r) (fun _ => false) b4 None
   end.
 
 Definition verify_listed (roots : list root) : bool :=
@@ -99,10 +101,13 @@ Proof.
     + intros v Hv E. specialize (Nf v Hv). unfold is_flat in Nf. now rewrite E in Nf.
     + intros f i j l m w Hf E As. specialize (Lf f Hf). rewrite As in Lf. destruct w as [valley|]; [|discriminate].
       apply (Lt f i j l m valley Hf E). unfold asked_of. now rewrite As.
-  - destruct (space_solution d p b4 (top r) sp (signs_of r) (letters_of r) ok So Off Ev)
-      as (g & Gr & Gs & Sg & Fl & Lt).
-    unfold in_space in Ev. rewrite !andb_true_iff in Ev. destruct Ev as ((((Pt & _) & _) & _) & _).
-    apply Z.ltb_lt, IZR_lt in Pt. exists (scaled_up (/ IZR (top r)) g). now apply scaled_shown.
+  - apply andb_prop in Ev. destruct Ev as (Pt & Ev). apply Z.ltb_lt, IZR_lt in Pt.
+    destruct (space_solution d p b4 (top r) sp (signs_of r) (letters_of r) _ b4 None ok So Off Ev)
+      as (g & Gr & Gs & Sg & Fl & Lt & _).
+    exists (scaled_up (/ IZR (top r)) g). apply scaled_shown; try assumption.
+    + intros v Hv. now apply Gs.
+    + intros v e Hv E. destruct (Sg v e Hv E) as (t & Down & Pos & Side).
+      apply (null_side _ _ t); try assumption. now apply Gs.
 Qed.
 
 (** What is verified of a branch: its signs, flat stars, letters and multiplicity. The multiplicity is the number of

@@ -99,6 +99,58 @@ Proof.
 Qed.
 End Patterns.
 
+(** ** Representatives of branches *)
+
+(** What lies in nappes of its own, alone there, is listed if each sign vector agrees with exactly one pattern. *)
+Section Core.
+Context {A : Type}.
+Variable signs : A -> nat -> option bool.
+Variable J : list nat.
+Variable represents : vec -> Prop.
+Variable lies_in : (nat -> bool) -> vec -> Prop.
+Variable shown : A -> vec -> Prop.
+Hypothesis shown_represents : forall a h, shown a h -> represents h.
+Hypothesis shown_agrees : forall a h e, shown a h -> (lies_in e h <-> agree signs J e a = true).
+Hypothesis lies_somewhere : forall h, represents h -> exists e, lies_in e h.
+Hypothesis alone : forall e h h', represents h -> represents h' -> lies_in e h -> lies_in e h' -> h = h'.
+
+Lemma shown_in a l hs : Forall2 shown l hs -> In a l -> exists h, In h hs /\ shown a h.
+Proof.
+  induction 1 as [|b h l hs Hb _ IH]; [easy|]. intros [->|Ha]; [exists h; simpl; auto|].
+  destruct (IH Ha) as (g & Hg & Sg). exists g. simpl. auto.
+Qed.
+
+Lemma in_shown h l hs : Forall2 shown l hs -> In h hs -> exists a, In a l /\ shown a h.
+Proof.
+  induction 1 as [|b g l hs Hb _ IH]; [easy|]. intros [->|Hh]; [exists b; simpl; auto|].
+  destruct (IH Hh) as (a & Ha & Sa). exists a. simpl. auto.
+Qed.
+
+Theorem all_listed l hs : (forall e, exists a, filter (agree signs J e) l = [a]) -> Forall2 shown l hs ->
+  NoDup hs /\ forall h, In h hs <-> represents h.
+Proof.
+  intros One Hl. split.
+  - assert (Le : forall e, (length (filter (agree signs J e) l) <= 1)%nat)
+      by (intros e; destruct (One e) as (a & ->); auto).
+    clear One. induction Hl as [|a h l hs Sa Hl IH]; [constructor|]. constructor.
+    + intros Hin. destruct (in_shown h l hs Hl Hin) as (b & Hb & Sb).
+      set (e := fun v => match signs a v with Some s => s | None => true end).
+      assert (Aa : agree signs J e a = true).
+      { unfold agree. apply forallb_forall. intros v _. unfold fits, e. destruct (signs a v) as [[|]|]; reflexivity. }
+      assert (Ab : agree signs J e b = true) by (apply (shown_agrees b h e Sb), (shown_agrees a h e Sa), Aa).
+      specialize (Le e). cbn [filter] in Le. rewrite Aa in Le. cbn [length] in Le.
+      assert (Hb' : In b (filter (agree signs J e) l)) by now apply filter_In.
+      destruct (filter (agree signs J e) l); [easy|]. cbn [length] in Le. lia.
+    + apply IH. intros e. specialize (Le e). cbn [filter] in Le. destruct (agree signs J e a); cbn [length] in Le; lia.
+  - intros h. split.
+    + intros Hh. destruct (in_shown h l hs Hl Hh) as (a & _ & Sa). now apply (shown_represents a).
+    + intros Rh. destruct (lies_somewhere h Rh) as (e & He). destruct (One e) as (a & E).
+      assert (Ha : In a (filter (agree signs J e) l)) by (rewrite E; now left).
+      apply filter_In in Ha. destruct Ha as (Ha & Ag). destruct (shown_in a l hs Hl Ha) as (g & Hg & Sg).
+      apply (shown_agrees a g e Sg) in Ag. now rewrite (alone e h g Rh (shown_represents a g Sg) He Ag).
+Qed.
+End Core.
+
 (** ** Branches *)
 
 Section Listed.
@@ -140,48 +192,19 @@ Proof.
     + assert (H : In v []); [|easy]. rewrite <- E. apply filter_In. now rewrite Sv.
 Qed.
 
-Lemma shown_in a l hs : Forall2 shown l hs -> In a l -> exists h, In h hs /\ shown a h.
-Proof.
-  induction 1 as [|b h l hs Hb _ IH]; [easy|]. intros [->|Ha]; [exists h; simpl; auto|].
-  destruct (IH Ha) as (g & Hg & Sg). exists g. simpl. auto.
-Qed.
-
-Lemma in_shown h l hs : Forall2 shown l hs -> In h hs -> exists a, In a l /\ shown a h.
-Proof.
-  induction 1 as [|b g l hs Hb _ IH]; [easy|]. intros [->|Hh]; [exists b; simpl; auto|].
-  destruct (IH Hh) as (a & Ha & Sa). exists a. simpl. auto.
-Qed.
-
 Theorem listed l hs : (forall e, exists a, filter (agree signs I e) l = [a]) -> Forall2 shown l hs ->
   NoDup hs /\ (forall h, In h hs <-> representative S b4 h) /\
   forall z, complex_solution S z -> complex_affine S z \/
     exists h, In h hs /\ (exists s, on_branch S z s h) /\ forall h' s', In h' hs -> on_branch S z s' h' -> h' = h.
 Proof.
   intros One Hl.
-  assert (Rep : forall h, In h hs <-> representative S b4 h).
-  { intros h. split.
-    - intros Hh. destruct (in_shown h l hs Hl Hh) as (a & _ & R & _). exact R.
-    - intros (Hr & Hs). assert (Hn : in_nappes S (signs_of S h) h).
-      { apply signs_of_nappes. intros v Hv. rewrite (Hs v Hv). lra. }
-      destruct (One (signs_of S h)) as (a & E).
-      assert (Ha : In a (filter (agree signs I (signs_of S h)) l)) by (rewrite E; now left).
-      apply filter_In in Ha. destruct Ha as (Ha & Ag). destruct (shown_in a l hs Hl Ha) as (g & Hg & Sg).
-      pose proof Sg as ((Gr & Gs) & _). apply (shown_nappes a g _ Sg) in Ag.
-      now rewrite (different_sign_vectors S (unit b4) h g (signs_of S h)). }
-  split; [|split; [exact Rep|]].
-  - assert (Le : forall e, (length (filter (agree signs I e) l) <= 1)%nat)
-      by (intros e; destruct (One e) as (a & ->); auto).
-    clear One Rep. induction Hl as [|a h l hs Sa Hl IH]; [constructor|]. constructor.
-    + intros Hin. destruct (in_shown h l hs Hl Hin) as (b & Hb & Sb).
-      set (e := fun v => match signs a v with Some s => s | None => true end).
-      assert (Aa : agree signs I e a = true).
-      { unfold agree. apply forallb_forall. intros v _. unfold fits, e. destruct (signs a v) as [[|]|]; reflexivity. }
-      assert (Ab : agree signs I e b = true) by (apply (shown_nappes b h e Sb), (shown_nappes a h e Sa), Aa).
-      specialize (Le e). cbn [filter] in Le. rewrite Aa in Le. cbn [length] in Le.
-      assert (Hb' : In b (filter (agree signs I e) l)) by now apply filter_In.
-      destruct (filter (agree signs I e) l); [easy|]. cbn [length] in Le. lia.
-    + apply IH. intros e. specialize (Le e). cbn [filter] in Le. destruct (agree signs I e a); cbn [length] in Le; lia.
-  - intros z Hz.
+  destruct (all_listed signs I (representative S b4) (in_nappes S) shown) with (l := l) (hs := hs) as (D & Rep);
+    [now intros a h (R & _)|exact shown_nappes|intros h (_ & Hs)|
+      intros e h h' (Hr & Hs) (Hr' & Hs')|exact One|exact Hl|].
+  - exists (signs_of S h). apply signs_of_nappes. intros v Hv. rewrite (Hs v Hv). lra.
+  - now apply (different_sign_vectors S (unit b4)).
+  - split; [exact D|]. split; [exact Rep|].
+    intros z Hz.
     destruct (every_solution_on_a_branch S b1 b2 b3 b4 Rim Corners z Hz) as [|(s & h & Rh & Oh)]; [now left|right].
     exists h. split; [now apply Rep|]. split; [now exists s|]. intros h' s' Hh' Oh'. apply Rep in Hh'.
     now destruct (branch_has_one_representative S b1 b2 b3 b4 Rim Corners z s' s h' h Hh' Rh Oh' Oh).

@@ -47,6 +47,10 @@ Variable top : Z.
 Variable sp : space.
 Variable signs : nat -> option bool.
 Variable letters : nat -> option letter.
+(** Vertices whose curvature is not 0; and a vertex with the sign of its height, [Some None] if it is 0. *)
+Variable kept : nat -> bool.
+Variable corner : nat.
+Variable rise : option letter.
 
 Definition parts : list hub := filter (fun b => chosen sp (at_vertex b)) (hubs p).
 Definition unknowns : list nat := map at_vertex parts.
@@ -84,7 +88,7 @@ Definition beyond (f : zheights -> Z) (up : bool) : bool :=
 Definition space_hub (b : hub) : bool :=
   match signs (at_vertex b) with
   | None => forallb (fun h => exact_hub (fun _ => false) (fun _ => None) h b) spanning
-  | Some up => (chosen sp (at_vertex b) || combined b) && beyond (sided b) up
+  | Some up => (kept (at_vertex b) || chosen sp (at_vertex b) || combined b) && beyond (sided b) up
   end.
 
 Definition space_fold (f : fold_form) : bool :=
@@ -94,8 +98,14 @@ Definition space_fold (f : fold_form) : bool :=
   | Some (Some valley) => beyond (fun h => bent h f) valley
   end.
 
-Definition in_space : bool :=
-  (0 <? top)%Z && negb (mem b4 (inside d)) && contracts && forallb space_hub (hubs p) && forallb space_fold (folds p).
+Definition risen : bool :=
+  match rise with
+  | None => true
+  | Some None => forallb (fun h => h corner =? 0)%Z spanning
+  | Some (Some up) => beyond (fun h => h corner) up
+  end.
+
+Definition in_space : bool := contracts && forallb space_hub (hubs p) && forallb space_fold (folds p) && risen.
 
 (** ** What it means *)
 
@@ -318,24 +328,27 @@ Qed.
 
 (** Heights of the space that solve the equations; they have the signs, flat stars and letters. *)
 Lemma space_solution : in_space = true -> exists g,
-  (forall u, ~ In u (inside d) -> g u = IZR top * unit b4 u) /\ solves S (fun _ => 0) g /\
-  (forall v e, In v (inside d) -> signs v = Some e -> 0 < sign e * K2 S v (cone S v) g) /\
+  (forall u, ~ In u (inside d) -> g u = IZR top * unit b4 u) /\ (forall v, In v (inside d) -> kept v = false ->
+    K S v g = 0) /\
+  (forall v e, In v (inside d) -> signs v = Some e -> exists t, (forall u, In u (fan S v) -> t u < t v) /\
+    0 < K2 S v t t /\ 0 < sign e * K2 S v t g) /\
   (forall v, In v (inside d) -> signs v = None -> flat_star S v g) /\
   (forall f i j l r w, In f (folds p) -> ends f = (i, j, l, r) -> letters (name f) = Some w ->
-    match w with Some valley => 0 < sign valley * bend S i j l r g | None => bend S i j l r g = 0 end).
+    match w with Some valley => 0 < sign valley * bend S i j l r g | None => bend S i j l r g = 0 end) /\
+  match rise with Some (Some up) => 0 < sign up * g corner | Some None => g corner = 0 | None => True end.
 Proof.
-  unfold in_space. rewrite !andb_true_iff, !forallb_forall. intros ((((_ & _) & Con) & Hubs) & Folds).
+  unfold in_space. rewrite !andb_true_iff, !forallb_forall. intros (((Con & Hubs) & Folds) & Rise).
   destruct (solution Con) as (x & X4 & Zx & Box & Sol). exists (lifted x).
   assert (Flat : forall b, In b (hubs p) -> signs (at_vertex b) = None -> flat_star S (at_vertex b) (lifted x)).
   { intros b Hb N. specialize (Hubs b Hb). unfold space_hub in Hubs. rewrite N, forallb_forall in Hubs.
     destruct (hub_forms d p ok sound_p b Hb) as (Hi & _). apply flat_star_iff; [exact Hi|]. intros z. rewrite K2_sym.
     apply spanned; [intros a s c; apply K2_move| |exact Zx]. intros g Hg. rewrite K2_sym.
     apply (flat_null S _ _ Hi), (flat_measured d p ok sound_p b g Hb). now apply Hubs. }
-  assert (Null : forall b, In b (hubs p) -> K2 S (at_vertex b) (lifted x) (lifted x) = 0).
-  { intros b Hb. destruct (hub_forms d p ok sound_p b Hb) as (Hi & Ps & _).
+  assert (Null : forall b, In b (hubs p) -> kept (at_vertex b) = false -> K2 S (at_vertex b) (lifted x) (lifted x) = 0).
+  { intros b Hb Nk. destruct (hub_forms d p ok sound_p b Hb) as (Hi & Ps & _).
     destruct (signs (at_vertex b)) as [e|] eqn:E.
     2: { apply flat_null; [exact Hi|now apply Flat]. }
-    specialize (Hubs b Hb). unfold space_hub in Hubs. rewrite E, andb_true_iff, orb_true_iff in Hubs.
+    specialize (Hubs b Hb). unfold space_hub in Hubs. rewrite E, Nk, andb_true_iff, orb_false_l, orb_true_iff in Hubs.
     destruct Hubs as ([Ch|Co] & _).
     - apply Sol. apply in_map. now apply filter_In.
     - unfold combined in Co. destruct (combination sp (at_vertex b)) as (times, weights).
@@ -361,18 +374,17 @@ Proof.
       + intros c Hc. rewrite (Sol (at_vertex c)) by now apply in_map. ring. }
   assert (Which : forall v, In v (inside d) -> exists b, In b (hubs p) /\ at_vertex b = v).
   { intros v Hv. rewrite inside_hubs in Hv. apply in_map_iff in Hv. destruct Hv as (b & E & Hb). now exists b. }
-  split; [|split; [|split; [|split]]].
+  split; [|split; [|split; [|split; [|split]]]].
   - intros u Hu. assert (Mu : mem u (inside d) = false) by (unfold mem; now destruct in_dec).
     unfold lifted. rewrite X4, sum_zero.
     + unfold reals, start, with_rim. rewrite Mu. unfold unit, upd, zero.
       destruct (Nat.eq_dec u b4) as [->|N]; [rewrite Nat.eqb_refl; ring|]. apply Nat.eqb_neq in N. rewrite N. ring.
     + intros k _. unfold reals, along, with_rim. rewrite Mu. destruct (Nat.eqb u b4); ring.
-  - intros v Hv. destruct (Which v Hv) as (b & Hb & <-). rewrite <- K_polar_sheet; [now apply Null|].
+  - intros v Hv Nk. destruct (Which v Hv) as (b & Hb & <-). rewrite <- K_polar_sheet; [now apply Null|].
     apply in_or_app. now left.
   - intros v e Hv E. destruct (Which v Hv) as (b & Hb & <-).
     destruct (hub_forms d p ok sound_p b Hb) as (_ & Ps & Pt & Down & M).
-    assert (V : In (at_vertex b) (inner S ++ rim S)) by (apply in_or_app; now left).
-    apply (null_side S _ _ _ _ Hv Down Pt); [rewrite <- K_polar_sheet by exact V; now apply Null|].
+    exists (reals (mountain_at b)). split; [exact Down|]. split; [exact Pt|].
     specialize (Hubs b Hb). unfold space_hub in Hubs. rewrite E, andb_true_iff in Hubs. destruct Hubs as (_ & Be).
     apply (beyond_means (sided b) (K2 S (at_vertex b) (reals (mountain_at b))) (2 * IZR (scale b)));
       try assumption; [lra| |].
@@ -387,5 +399,10 @@ Proof.
     + apply spanned; [exact Lin| |exact Zx]. intros g Hg. rewrite forallb_forall in Folds. specialize (Folds g Hg).
       apply Z.eqb_eq, (f_equal IZR) in Folds. rewrite B in Folds. apply Rmult_integral in Folds.
       destruct Folds; [lra|assumption].
+  - unfold risen in Rise. destruct rise as [[up|]|]; [| |exact Logic.I].
+    + apply (beyond_means (fun h => h corner) (fun h => h corner) 1); try assumption; [lra|now intros a s c|].
+      intros h. unfold reals. ring.
+    + rewrite forallb_forall in Rise. apply (spanned (fun h => h corner)); [now intros a s c| |exact Zx].
+      intros g Hg. unfold reals. apply f_equal. now apply Z.eqb_eq, Rise.
 Qed.
 End Space.

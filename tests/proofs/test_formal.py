@@ -53,6 +53,7 @@ ASSUMED = {
     "exact_verified": CLASSICAL,
     "exact_notched_verified": CLASSICAL,
     "listed_verified": CLASSICAL,
+    "reflex_verified": CLASSICAL,
     "disk_moves": REALS,
     "others": CLASSICAL,
 }

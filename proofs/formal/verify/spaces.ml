@@ -32,9 +32,63 @@ let inverted a =
   let found = echelon n rows in
   if List.length found < n then None else Some (Array.of_list (List.map (fun (_, r) -> Array.sub r n n) found))
 
+(* --- the chart --- *)
+
+let fixed v = fun u -> if u = v then Z.one else Z.zero
+
+(* The unknowns of the file are heights of [inside], in its chart: [basis] has the heights, times a positive number, for each
+   unknown and for the constant. The evidence has heights of [own]: if the corner [r] is reflex this is among them, the rim
+   is at height 0, and spaces have no constant. Otherwise [last] has the height 1. *)
+type chart = { p : V.prepared; inside : int array; own : int array; basis : (int -> Z.t) array; last : int; corner : int option }
+
+(* The heights for the constant, where the first corner has height 1, less a plane: the others but [r] are at height 0. *)
+let levelled points rim r =
+  let first = List.fold_left min (List.hd rim) rim in
+  let turn a b c = let at v = points.(v) in
+    let (ax, ay), (bx, by), (cx, cy) = at a, at b, at c in
+    Z.sub (Z.mul (Z.sub bx ax) (Z.sub cy ay)) (Z.mul (Z.sub by ay) (Z.sub cx ax)) in
+  match List.filter (fun v -> v <> first && v <> r) rim with
+  | [ a; b ] when first <> r ->
+    let all = turn first a b in
+    let sign = Z.of_int (Z.sign all) in
+    (Z.abs all, fun u -> Z.mul sign (Z.sub (if u = first then all else Z.zero) (turn u a b)))
+  | _ -> (Z.one, fixed r)
+
+let chart_of (d : V.drawing) p inside corner given =
+  let n = Array.length inside in
+  let units times = Array.map (fun v u -> Z.mul times (fixed v u)) inside in
+  match corner with
+  | None ->
+    let last = List.nth d.border 3 in
+    { p; inside; own = inside; basis = Array.append (units Z.one) [| fixed last |]; last; corner }
+  | Some r ->
+    let basis = match given with
+      | Null -> let times, constant = levelled (Array.of_list d.points) (r :: d.border) r in
+        Array.append (units times) [| constant |]
+      | Entries pairs ->
+        let weights = List.map (fun (v, w) -> (digits "a vertex of the chart" v, rational "a weight of the chart" w)) pairs in
+        let unit = List.fold_left (fun n (_, (_, q)) -> Z.lcm n q) Z.one weights in
+        let weight v = match List.assoc_opt (Z.of_int v) weights with
+          | Some (x, q) -> Z.mul x (Z.div unit q) | None -> Z.zero in
+        let lead = weight r in
+        let signed x = if Z.sign lead < 0 then Z.neg x else x in
+        if Z.sign lead = 0 then refuse "the chart does not fix the height of the reflex corner";
+        Array.append (Array.map (fun v u -> if u = r then signed (Z.neg (weight v)) else Z.mul (Z.abs lead) (fixed v u)) inside)
+          [| (fun u -> if u = r then signed unit else Z.zero) |]
+      | _ -> refuse "the chart is neither null nor a functional" in
+    { p; inside; own = Array.append inside [| r |]; basis; last = -1; corner }
+
+(* Heights of [own], of unknowns of the file and the constant. *)
+let lifted c x constant =
+  let n = Array.length c.inside in
+  Array.map (fun u ->
+    let sum = ref (Q.mul constant (Q.of_bigint (c.basis.(n) u))) in
+    Array.iteri (fun k y -> if Q.sign y <> 0 then sum := Q.add !sum (Q.mul y (Q.of_bigint (c.basis.(k) u)))) x;
+    !sum) c.own
+
 (* --- roots of the file --- *)
 
-(* Heights inside where the last corner has height 1, whether they may be exact, and other spaces in which they lie. *)
+(* Heights of [own], whether they may be exact, and other spaces in which they lie: a point and directions. *)
 type near = { heights : Q.t array; exact : bool; others : (Q.t array * Q.t array list) list }
 
 let fraction what j = let p, q = rational what j in Q.make p q
@@ -59,7 +113,8 @@ let centre size j =
   if List.length given <> size then refuse "a root has another number of heights";
   Array.of_list (List.map (fun c -> Q.make c (Z.shift_left Z.one bits)) given)
 
-let of_class size classes j =
+let of_class c classes j =
+  let size = Array.length c.inside in
   only "class interval" j;
   let classes = Array.of_list (items "classes" classes) in
   let own = classes.(small ~most:(Array.length classes - 1) "class" (entry "class" j)) in
@@ -78,19 +133,16 @@ let of_class size classes j =
     (* x is the sum of t^k / p'(t) times the coefficients of the numerators, 1 that times those of p' *)
     let origin = Array.map (fun f -> Q.div (coefficient f last) d.(last)) w in
     let direction k = Array.map (fun f -> Q.sub (coefficient f k) (Q.mul d.(k) (Q.div (coefficient f last) d.(last)))) w in
-    { heights = Array.map (fun f -> Q.div (value f t) below) w; exact = Q.sign (value p t) = 0;
-      others = [ (origin, List.init last direction) ] }
+    { heights = lifted c (Array.map (fun f -> Q.div (value f t) below) w) Q.one; exact = Q.sign (value p t) = 0;
+      others = [ (lifted c origin Q.one, List.map (fun x -> lifted c x Q.zero) (List.init last direction)) ] }
   | _ -> refuse "an interval has not two ends"
 
 (* --- spaces --- *)
 
-let fixed v = fun u -> if u = v then Z.one else Z.zero
-
-(* The heights at which some folds are flat: a point and directions. *)
-let flat_space (p : V.prepared) inside last is_flat =
-  let n = Array.length inside in
-  let row (f : V.fold_form) = Array.init (n + 1) (fun k ->
-    Q.of_bigint (V.bent (fixed (if k = n then last else inside.(k))) f)) in
+(* Where some folds are flat: a point and directions, in the coordinates of a basis and a constant. *)
+let flat_space (p : V.prepared) basis is_flat =
+  let n = Array.length basis - 1 in
+  let row f = Array.map (fun h -> Q.of_bigint (V.bent h f)) basis in
   let found = echelon (n + 1) (List.map row (List.filter is_flat p.folds)) in
   if List.mem_assoc n found then refuse "no heights in the chart have the flat folds";
   let free = List.filter (fun k -> not (List.mem_assoc k found)) (List.init n Fun.id) in
@@ -99,20 +151,20 @@ let flat_space (p : V.prepared) inside last is_flat =
 
 let touches flat (f : V.fold_form) = let ((i, j), _), _ = f.ends in List.mem i flat || List.mem j flat
 
-let read size classes (p : V.prepared) inside last j =
+let read c classes j =
   let has key = match j with Entries pairs -> List.mem_assoc key pairs | _ -> refuse "a root is not an object" in
-  if has "class" then of_class size classes j
+  if has "class" then of_class c classes j
   else if has "flat" then begin
     only "center radius bits flat" j;
     let flat = List.map (small "a flat vertex") (items "flat" (entry "flat" j)) in
-    let origin, directions = flat_space p inside last (touches flat) in
+    let origin, directions = flat_space c.p c.basis (touches flat) in
     let y = centre (List.length directions) j in
     let add (x, k) a = (less x (Q.neg y.(k)) a, k + 1) in
-    { heights = fst (List.fold_left add (origin, 0) directions); exact = false; others = [] }
+    { heights = lifted c (fst (List.fold_left add (origin, 0) directions)) Q.one; exact = false; others = [] }
   end
   else begin
     only "center radius bits" j;
-    { heights = centre size j; exact = true; others = [] }
+    { heights = lifted c (centre (Array.length c.inside) j) Q.one; exact = true; others = [] }
   end
 
 let two = Z.of_int 2
@@ -129,16 +181,29 @@ let point base : V.space =
     combination = fun _ -> (Z.one, zero) }
 
 (* The height of the last corner, and exact heights. *)
-let exactly inside xs =
+let exactly c xs =
   let top = Array.fold_left (fun n x -> Z.lcm n (Q.den x)) Z.one xs in
   let whole = Array.map (fun x -> Q.num (Q.mul (Q.of_bigint top) x)) xs in
-  (top, V.Within (point (placed inside whole)))
+  (top, V.Within (point (placed c.own whole)))
 
 let largest = List.fold_left Z.max Z.zero
 let total l f = List.fold_left (fun s x -> Z.add s (f x)) Z.zero l
 
+(* With a reflex corner the space has no constant: that height of a basis which is largest becomes it. *)
+let with_constant (origin, directions) xs =
+  let rows = echelon (Array.length xs) (origin :: directions) in
+  let larger (k, r) (j, r') = if Q.lt (Q.abs xs.(k)) (Q.abs xs.(j)) then (j, r') else (k, r) in
+  let k, row = List.fold_left larger (List.hd rows) rows in
+  let times = Q.abs xs.(k) in
+  if Q.sign times = 0 then refuse "all heights are 0";
+  let signed x = if Q.sign xs.(k) < 0 then Q.neg x else x in
+  ((Array.map signed row, List.map snd (List.filter (fun (j, _) -> j <> k) rows)), Array.map (fun x -> Q.div x times) xs)
+
 (* A space with as many unknowns as independent curvatures, with a box around the heights; [bits] are digits. *)
-let within (p : V.prepared) inside last flat (origin, directions) xs =
+let within c flat space xs =
+  let { p; own = inside; last; _ } = c in
+  let (origin, directions), xs = if c.corner = None then (space, xs) else with_constant space xs in
+  let flat = Option.to_list c.corner @ flat in
   let n = Array.length inside in
   let reduced = echelon n directions in
   let origin = List.fold_left (fun o (k, r) -> less o o.(k) r) origin reduced in
@@ -222,26 +287,34 @@ let within (p : V.prepared) inside last flat (origin, directions) xs =
 
 let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
 
+(* The heights seen from the side on which a reflex corner pops up. *)
+let upright c xs =
+  let popped r = List.find (fun (b : V.hub) -> b.at_vertex = r) c.p.hubs in
+  match c.corner with
+  | Some r when Z.sign (V.sided (popped r) (placed c.own (Array.map (fun x -> scaled x 128) xs))) < 0 -> Array.map Q.neg xs
+  | _ -> xs
+
 (* The evidence that the test accepts, if some is found; [flat] are the vertices with the sign 0, [straight] the folds with
    the letter F. *)
-let evidence (d : V.drawing) (p : V.prepared) lights inside last flat straight near accepts =
+let evidence (d : V.drawing) lights c flat straight near accepts =
+  let heights = upright c near.heights in
   let first found attempt = match found with Some _ -> found | None -> Option.bind (attempt ()) (fun e ->
     if accepts e then Some e else None) in
-  let exact () = if near.exact then Some (exactly inside near.heights) else None in
+  let exact () = if near.exact then Some (exactly c heights) else None in
   let close bits () =
     let h = Array.make (List.length d.points) Z.zero in
-    Array.iteri (fun k v -> h.(v) <- scaled near.heights.(k) bits) inside;
-    h.(last) <- Z.shift_left Z.one bits;
+    Array.iteri (fun k v -> h.(v) <- scaled heights.(k) bits) c.own;
+    h.(c.last) <- Z.shift_left Z.one bits;
     for _ = 0 to (bits - 40) / 40 do Proposing.step lights None h bits (bits - 14) done;
-    Some (h.(last), V.Near (fun u -> h.(u))) in
+    Some (h.(c.last), V.Near (fun u -> h.(u))) in
   let is_straight (f : V.fold_form) = straight f.name || touches flat f in
+  let basis = if c.corner = None then c.basis else Array.append (Array.map fixed c.own) [| (fun _ -> Z.zero) |] in
   let spaces make =
-    let space = lazy (match make () with
-      | exception Refused _ -> fun _ -> None
-      | space -> within p inside last flat space near.heights) in
+    let space = lazy (match within c flat (make ()) heights with exception Refused _ -> fun _ -> None | found -> found) in
     List.map (fun bits () -> Lazy.force space bits) [ 64; 128; 256; 512 ] in
-  let straightened = if List.exists is_straight p.folds then spaces (fun () -> flat_space p inside last is_straight) else [] in
-  let rest = if flat = [] then List.map close precisions @ spaces (fun () -> flat_space p inside last (fun _ -> false))
-    else spaces (fun () -> flat_space p inside last (touches flat))
-      @ List.concat_map (fun s -> spaces (fun () -> s)) near.others in
+  let flat_where test = spaces (fun () -> flat_space c.p basis test) in
+  let straightened = if List.exists is_straight c.p.folds then flat_where is_straight else [] in
+  let rest =
+    if flat = [] then (if c.corner = None then List.map close precisions else []) @ flat_where (fun _ -> false)
+    else flat_where (touches flat) @ List.concat_map (fun s -> spaces (fun () -> s)) near.others in
   List.fold_left first None (exact :: straightened @ rest)
