@@ -36,5 +36,6 @@ Definition others :=
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
    boxed, no_star_is_flat, near_branch, near_solution, passed,
    open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
-   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch, @all_counted, @all_listed, @listed, @raised_listed).
+   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch,
+   @all_counted, @all_listed, @listed, @raised_listed).
 Print Assumptions others.

@@ -14,8 +14,13 @@ let () =
   let forge number (r : V.root) =
     let refuse what r = if passes r then (Printf.printf "branch %d passes with another %s\n" number what; exit 1) else incr refused in
     if not (passes r) then (Printf.printf "branch %d does not pass\n" number; exit 1);
-    refuse "height of the corner" { r with top = Z.zero };
-    refuse "height of the corner" { r with top = Z.neg r.top };
+    if t.corner = None then begin
+      refuse "height of the corner" { r with top = Z.zero };
+      refuse "height of the corner" { r with top = Z.neg r.top }
+    end;
+    (match r.rise with
+    | Some (Some up) -> refuse "side" { r with rise = Some (Some (not up)) }; refuse "side" { r with rise = Some None }
+    | _ -> ());
     refuse "multiplicity" { r with times = r.times + 1 };
     List.iter (fun v ->
       let signed s = fun u -> if u = v then s else r.signs_of u in

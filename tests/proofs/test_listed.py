@@ -18,6 +18,8 @@ CERTIFICATES = Path(__file__).parent.parent / "fixtures" / "certificates"
 TRIANGLE = CERTIFICATES / "compact-roots-triangle.txt"
 """Five branches; vertex 7 lies in a triangulated triangle, and 5 and 6 are flat on the last one."""
 FLAT_BOX = CERTIFICATES / "algebraic-flat-box.json"
+EITHER = CERTIFICATES / "compact-roots-either-side.txt"
+"""Three branches of a sheet with a reflex corner; of the first one no side is told apart."""
 Change = Callable[[Lines], object]
 FAILED = "NOT VERIFIED  branch {} did not pass the test"
 
@@ -131,6 +133,42 @@ def test_forged_listings_are_refused(verifier: Path, tmp_path: Path) -> None:
         assert valid(path) is None, said
 
 
+REVERSED = str.maketrans("+-MV", "-+VM")
+REFLEX_FORGERIES: list[tuple[str, Change]] = [
+    (FAILED.format(2), at(2, vertex_signs="-+", assignment="VVVMMVM".translate(REVERSED))),
+    (FAILED.format(2), at(2, vertex_signs="-+")),
+    (FAILED.format(2), at(2, vertex_signs="+-", assignment="MVVMMVM")),
+    (FAILED.format(1), at(1, vertex_signs="+0")),
+    (FAILED.format(1), at(1, vertex_signs="--", multiplicity=1)),
+    (FAILED.format(1), at(1, multiplicity=1)),
+    (FAILED.format(0), at(0, vertex_signs="-+")),
+    ("branch 1: its positive saddle is shown", at(1, representative="neither")),
+    (FAILED.format(1), evidence(chart=None)),
+    ("the chart does not fix the height of the reflex corner", evidence(chart={"4": "1"})),
+    ("the chart is neither null nor a functional", evidence(chart=[])),
+    ("a vertex of the chart is no whole number", evidence(chart={"x": "1"})),
+    ("a weight of the chart is no rational number", evidence(chart={"1": "1/0"})),
+    ('the claim "distinct" is 4', claim(distinct=4)),
+]
+
+
+@pytest.mark.slow
+def test_forged_listings_with_a_reflex_corner_are_refused(verifier: Path, tmp_path: Path) -> None:
+    code, text = run(verifier, EITHER)
+    assert code == 0
+    assert "exactly 3 branches" in text
+    assert "theorem reflex_verified" in text
+    path = tmp_path / "forged.txt"
+    for said, change in REFLEX_FORGERIES:
+        lines = bodies(EITHER.read_bytes())
+        change(lines)
+        path.write_bytes(chained(lines))
+        code, text = run(verifier, path)
+        assert code in (1, 3), (said, text)
+        assert said in text, (said, text)
+        assert valid(path) is None, said
+
+
 @pytest.mark.slow
 def test_roots_are_proposals(verifier: Path, tmp_path: Path) -> None:
     """The program finds its own evidence near them, where the checker in Python refuses."""
@@ -199,7 +237,8 @@ def forger(formal: Path, verifier: Path, tmp_path_factory: pytest.TempPathFactor
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "spaces"), [("flat-box", 2), ("ring", 26), ("triangle", 0), ("open-folds", 0)]
+    ("name", "spaces"),
+    [("flat-box", 2), ("ring", 26), ("triangle", 0), ("open-folds", 0), ("reflex", 12)],
 )
 def test_the_proved_test_refuses_other_evidence(forger: Path, name: str, spaces: int) -> None:
     path = CERTIFICATES / f"algebraic-{name}.json"

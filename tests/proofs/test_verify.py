@@ -36,12 +36,6 @@ NAMED = {
         "branch-deficits-triangles",
         "branch-merged",
     },
-    "a corner is reflex: of version 2 only convex": {
-        *("compact-roots-either-side", "compact-roots-reflex", "listing-dart", "listing-notched"),
-        *(f"listing-reflex{name}" for name in ("", "-chord", "-either-side", "-triangle")),
-        *(f"algebraic-{name}" for name in ("either-side", "either-side-both", "reflex")),
-        "algebraic-either-side-groebner",
-    },
     'the evidence is "rigid", not': {"compact-roots-rigid", "rigid-nested", "rigid-triangle"},
     'the evidence is "single vertex", not': {
         "compact-roots-single-vertex",
