@@ -1,7 +1,7 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
   Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact
-  Patterns Space Listed Reflex Flex Example BranchExample.
+  Patterns Space Contracting Rooted Within Listed Reflex Flex Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.

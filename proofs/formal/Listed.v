@@ -2,7 +2,7 @@
     triangles are allowed. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Star KeyLemma Flat Complex Theorems Branches Patterns
-  Triangles Drawing Tables Rational Certificate Integers Verify Emptied Exact Space.
+  Triangles Drawing Tables Rational Certificate Integers Verify Emptied Exact Space Within.
 Import ListNotations.
 Open Scope R_scope.
 

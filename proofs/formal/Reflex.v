@@ -1,7 +1,7 @@
 (** All branches of a sheet with a reflex corner, one after the other, as in Listed.v. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Star KeyLemma Flat Complex Theorems Branches Patterns Notch
-  Triangles Drawing Tables Rational Certificate Integers Verify Emptied Exact Space Listed.
+  Triangles Drawing Tables Rational Certificate Integers Verify Emptied Exact Space Within Listed.
 Import ListNotations.
 Open Scope R_scope.
 

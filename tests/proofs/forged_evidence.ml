@@ -54,21 +54,33 @@ let () =
         List.iter (fun k ->
           List.iter (fun v -> space "column" { sp with column = fun j -> if j = k then raised v (sp.column j) else sp.column j }) flat;
           space "centre" { sp with centre = fun j -> Z.add (sp.centre j) (if j = k then Z.of_int 1024 else Z.zero) }) names;
-        space "radius" { sp with half = Z.minus_one };
-        space "radius" { sp with half = Z.shift_left (more sp.half) 10_000 };
-        space "inverse" { sp with inverse = fun _ _ -> Z.zero };
-        space "denominator" { sp with over = Z.neg sp.over };
-        space "denominator" { sp with over = Z.mul (Z.of_int 2) sp.over };
-        space "bound" { sp with bound0 = less sp.bound0 };
-        space "bound" { sp with bound1 = less sp.bound1 };
-        space "bound" { sp with bound2 = less sp.bound2 };
-        space "bound" { sp with bound0 = Z.mul sp.half sp.over };
-        space "bound" { sp with bound1 = sp.over };
-        space "bound" { sp with bound2 = sp.over };
+        if sp.polynomial = [] then begin
+          space "radius" { sp with half = Z.minus_one };
+          space "radius" { sp with half = Z.shift_left (more sp.half) 10_000 };
+          space "inverse" { sp with inverse = fun _ _ -> Z.zero };
+          space "denominator" { sp with over = Z.neg sp.over };
+          space "denominator" { sp with over = Z.mul (Z.of_int 2) sp.over };
+          space "bound" { sp with bound0 = less sp.bound0 };
+          space "bound" { sp with bound1 = less sp.bound1 };
+          space "bound" { sp with bound2 = less sp.bound2 };
+          space "bound" { sp with bound0 = Z.mul sp.half sp.over };
+          space "bound" { sp with bound1 = sp.over };
+          space "bound" { sp with bound2 = sp.over };
+        end
+        else begin
+          space "radius" { sp with half = less sp.half };
+          space "polynomial" { sp with polynomial = more (List.hd sp.polynomial) :: List.tl sp.polynomial };
+          space "end" { sp with low = less sp.low };
+          space "ends" { sp with low = sp.high; high = sp.low };
+          space "ends" { sp with low = more sp.low; high = more sp.high };
+          space "denominator" { sp with below = Z.neg sp.below };
+          List.iter (fun v -> if not (List.mem v flat) then
+            space "quotient" { sp with quotient = fun u -> if u = v then [ Z.one ] else sp.quotient u }) (Array.to_list t.inside)
+        end;
         space "choice" { sp with chosen = fun _ -> false };
         space "choice" { sp with chosen = fun _ -> true }
       end;
-      List.iter (fun v -> if not (sp.chosen v || List.mem v flat) then
+      List.iter (fun v -> if not (sp.polynomial <> [] || sp.chosen v || List.mem v flat) then
         space "combination" { sp with combination = fun u -> if u = v then (Z.zero, fun _ -> Z.zero) else sp.combination u })
         (Array.to_list t.inside) in
   List.iteri forge roots;

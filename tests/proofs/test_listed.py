@@ -238,7 +238,14 @@ def forger(formal: Path, verifier: Path, tmp_path_factory: pytest.TempPathFactor
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "spaces"),
-    [("flat-box", 2), ("ring", 26), ("triangle", 0), ("open-folds", 0), ("reflex", 12)],
+    [
+        ("flat-box", 2),
+        ("ring", 26),
+        ("triangle", 0),
+        ("open-folds", 0),
+        ("reflex", 12),
+        ("waterbomb-pair", 28),
+    ],
 )
 def test_the_proved_test_refuses_other_evidence(forger: Path, name: str, spaces: int) -> None:
     path = CERTIFICATES / f"algebraic-{name}.json"

@@ -89,13 +89,47 @@ let lifted c x constant =
 (* --- roots of the file --- *)
 
 (* Heights of [own], whether they may be exact, and other spaces in which they lie: a point and directions. *)
-type near = { heights : Q.t array; exact : bool; others : (Q.t array * Q.t array list) list }
+type near = { heights : Q.t array; exact : bool; others : (Q.t array * Q.t array list) list; root : algebraic option }
+
+(* A root of a polynomial with coprime coefficients, approximately, and heights of [own] for each of its powers from 0. *)
+and algebraic = { divisor : Z.t list; about : Q.t; powers : Q.t array list }
 
 let fraction what j = let p, q = rational what j in Q.make p q
 let polynomial j = Array.of_list (List.map (fraction "a coefficient") (items "a polynomial" j))
 let value f x = Array.fold_right (fun c s -> Q.add c (Q.mul x s)) f Q.zero
 let slope f = Array.init (max 0 (Array.length f - 1)) (fun k -> Q.mul (Q.of_int (k + 1)) f.(k + 1))
 let coefficient f k = if k < Array.length f then f.(k) else Q.zero
+
+let trimmed f =
+  let n = ref (Array.length f) in
+  while !n > 0 && Q.sign f.(!n - 1) = 0 do decr n done;
+  Array.sub f 0 !n
+let times f g = if f = [||] || g = [||] then [||] else begin
+  let h = Array.make (Array.length f + Array.length g - 1) Q.zero in
+  Array.iteri (fun i a -> Array.iteri (fun j b -> h.(i + j) <- Q.add h.(i + j) (Q.mul a b)) g) f;
+  trimmed h
+end
+let minus f g = trimmed (Array.init (max (Array.length f) (Array.length g)) (fun k -> Q.sub (coefficient f k) (coefficient g k)))
+
+(* Quotient and remainder; [g] is not 0. *)
+let divided f g =
+  let n = Array.length g in
+  let rec go q r =
+    if Array.length r < n then (q, r)
+    else
+      let shift = Array.length r - n in
+      let lead = Q.div r.(Array.length r - 1) g.(n - 1) in
+      let term = Array.init (shift + 1) (fun k -> if k = shift then lead else Q.zero) in
+      go (minus q (Array.map Q.neg term)) (minus r (times term g)) in
+  go [||] (trimmed f)
+
+(* The inverse of f modulo p, if they are coprime. *)
+let inverse_modulo f p =
+  let rec go (r, u) (r', u') = match Array.length r' with
+    | 0 -> None
+    | 1 -> Some (Array.map (fun x -> Q.div x r'.(0)) u')
+    | _ -> let q, rest = divided r r' in go (r', u') (rest, minus u (times q u')) in
+  go (p, [||]) (snd (divided f p), [| Q.one |])
 
 (* A root in an interval in which the polynomial changes its sign, to 100 digits and more. *)
 let rec narrowed f low high steps =
@@ -133,7 +167,16 @@ let of_class c classes j =
     (* x is the sum of t^k / p'(t) times the coefficients of the numerators, 1 that times those of p' *)
     let origin = Array.map (fun f -> Q.div (coefficient f last) d.(last)) w in
     let direction k = Array.map (fun f -> Q.sub (coefficient f k) (Q.mul d.(k) (Q.div (coefficient f last) d.(last)))) w in
+    let common = Array.fold_left (fun n x -> Z.lcm n (Q.den x)) Z.one p in
+    let whole = Array.map (fun x -> Q.num (Q.mul (Q.of_bigint common) x)) p in
+    let content = Array.fold_left Z.gcd Z.zero whole in
+    let of_inverse g =
+      let x = Array.map (fun f -> snd (divided (times f g) p)) w in
+      let power k = lifted c (Array.map (fun f -> coefficient f k) x) (if k = 0 then Q.one else Q.zero) in
+      { divisor = List.map (fun x -> Z.divexact x content) (Array.to_list whole); about = t;
+        powers = List.init (Array.length p - 1) power } in
     { heights = lifted c (Array.map (fun f -> Q.div (value f t) below) w) Q.one; exact = Q.sign (value p t) = 0;
+      root = Option.map of_inverse (inverse_modulo d p);
       others = [ (lifted c origin Q.one, List.map (fun x -> lifted c x Q.zero) (List.init last direction)) ] }
   | _ -> refuse "an interval has not two ends"
 
@@ -160,11 +203,11 @@ let read c classes j =
     let origin, directions = flat_space c.p c.basis (touches flat) in
     let y = centre (List.length directions) j in
     let add (x, k) a = (less x (Q.neg y.(k)) a, k + 1) in
-    { heights = lifted c (fst (List.fold_left add (origin, 0) directions)) Q.one; exact = false; others = [] }
+    { heights = lifted c (fst (List.fold_left add (origin, 0) directions)) Q.one; exact = false; others = []; root = None }
   end
   else begin
     only "center radius bits" j;
-    { heights = lifted c (centre (Array.length c.inside) j) Q.one; exact = true; others = [] }
+    { heights = lifted c (centre (Array.length c.inside) j) Q.one; exact = true; others = []; root = None }
   end
 
 let two = Z.of_int 2
@@ -178,7 +221,8 @@ let point base : V.space =
   let zero _ = Z.zero in
   { chosen = (fun _ -> false); base; column = (fun _ -> zero); centre = zero; half = Z.zero;
     inverse = (fun _ -> zero); over = Z.one; bound0 = Z.zero; bound1 = Z.zero; bound2 = Z.zero;
-    combination = fun _ -> (Z.one, zero) }
+    combination = (fun _ -> (Z.one, zero)); polynomial = []; quotient = (fun _ -> []); low = Z.zero; high = Z.zero;
+    below = Z.zero }
 
 (* The height of the last corner, and exact heights. *)
 let exactly c xs =
@@ -278,9 +322,42 @@ let within c flat space xs =
         Z.abs (weighted i (fun b -> V.polar b c c'))))) index) in
       let half = Z.add two (Z.mul two (Z.cdiv bound0 over)) in
       let place v = let rec go k = function [] -> 0 | w :: l -> if w = v then k else go (k + 1) l in go 0 names in
-      Some (start last, V.Within { chosen = (fun v -> List.mem v names); base = start; column;
+      Some (start last, V.Within { (point start) with chosen = (fun v -> List.mem v names); column;
         centre = (fun v -> m.(place v)); half; inverse = (fun v w -> y.(place v).(place w)); over; bound0; bound1; bound2;
         combination = fun v -> Option.value (List.assoc_opt v known) ~default:(Z.one, fun _ -> Z.zero) })
+  end
+
+(* Heights that are polynomials of a root; [bits] are the digits of its interval. *)
+let rooted (d : V.drawing) (p : V.prepared) c flat root bits =
+  let hubs = List.filter (fun (b : V.hub) -> not (List.mem b.at_vertex flat || c.corner = Some b.at_vertex)) p.hubs in
+  let size = List.length root.powers - 1 in
+  if size > List.length p.hubs then None
+  else begin
+    let names = List.filteri (fun k _ -> k < size) (List.map (fun (b : V.hub) -> b.at_vertex) p.hubs) in
+    let common = List.fold_left (fun n row -> Array.fold_left (fun n x -> Z.lcm n (Q.den x)) n row) Z.one root.powers in
+    let column times row = placed c.own (Array.map (fun x -> Z.mul times (Q.num (Q.mul (Q.of_bigint common) x))) row) in
+    let below = Z.shift_left Z.one bits in
+    let low = Q.to_bigint (Q.mul_2exp root.about bits) in
+    let low = if Q.lt root.about (Q.make low below) then Z.pred low else low in
+    let high = Z.succ low in
+    let unit = Z.pow below size in
+    let most = Z.max (Z.abs low) (Z.abs high) in
+    let pairs = List.combine names (List.map (column Z.one) (List.tl root.powers)) in
+    let index v = let rec go k = function [] -> 0 | w :: l -> if w = v then k else go (k + 1) l in go 0 names in
+    let centre v = let j = index v in Z.mul (Z.pow low (j + 1)) (Z.pow below (size - j - 1)) in
+    let half = largest (List.mapi (fun j _ ->
+      Z.mul (Z.mul (Z.of_int (j + 1)) (Z.pow most j)) (Z.pow below (size - j - 1))) names) in
+    let sp = { (point (column unit (List.hd root.powers))) with V.chosen = (fun v -> List.mem v names); centre; half;
+      column = (fun v -> Option.value (List.assoc_opt v pairs) ~default:(fun _ -> Z.zero));
+      polynomial = root.divisor; low; high; below } in
+    let top, b4 = if c.corner = None then (Z.mul unit common, c.last) else (Z.zero, List.hd d.border) in
+    let powers = V.powers d p b4 top sp in
+    let divisor = Array.of_list (List.map Q.of_bigint root.divisor) in
+    let quotient (b : V.hub) =
+      let paired = Array.of_list (List.map Q.of_bigint (V.paired b powers powers)) in
+      (b.at_vertex, List.map Q.num (Array.to_list (fst (divided paired divisor)))) in
+    let known = List.map quotient hubs in
+    Some (top, V.Within { sp with quotient = fun v -> Option.value (List.assoc_opt v known) ~default:[] })
   end
 
 (* --- evidence for a branch --- *)
@@ -317,4 +394,9 @@ let evidence (d : V.drawing) lights c flat straight near accepts =
   let rest =
     if flat = [] then (if c.corner = None then List.map close precisions else []) @ flat_where (fun _ -> false)
     else flat_where (touches flat) @ List.concat_map (fun s -> spaces (fun () -> s)) near.others in
-  List.fold_left first None (exact :: straightened @ rest)
+  let turned = List.map (if heights == near.heights then Fun.id else Array.map Q.neg) in
+  let algebraic = match near.root with
+    | Some root -> let root = { root with powers = turned root.powers } in
+      List.map (fun bits () -> rooted d c.p c flat root bits) [ 64; 128; 256 ]
+    | None -> [] in
+  List.fold_left first None (exact :: straightened @ rest @ algebraic)
