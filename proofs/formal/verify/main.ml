@@ -69,8 +69,6 @@ let notch_chart j corner inside =
   ((fun v -> Option.value (List.assoc_opt v whole) ~default:Z.zero),
     fun h bits -> Z.div (Z.sub (Z.shift_left unit bits) (rest h)) lead)
 
-let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
-
 let all_branches header blocks claims =
   let evidence = entry "evidence" header in
   only "format version pattern evidence provenance" header;
@@ -113,10 +111,7 @@ let all_branches header blocks claims =
     if fst !now <> n / length then now := (n / length, block size folds (n / length) length blocks.(n / length));
     snd !now (n mod length) in
   let heights root bits =
-    let h = Array.make (Array.length file.points) Z.zero in
-    let shift = bits - root.bits in
-    Array.iteri (fun k v -> let c = root.center.(k) in
-      h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
+    let h = Proposing.shifted (Array.length file.points) inside root.center root.bits bits in
     (match lifted, corner with
     | Some (_, height), Some r -> h.(r) <- height h bits
     | _ -> h.(List.nth d.border 3) <- Z.shift_left Z.one bits);
@@ -125,9 +120,8 @@ let all_branches header blocks claims =
     | None -> V.passes p (fun _ -> false) e (fun u -> h.(u)) letters
     | Some r -> V.raised_passes d p r e (fun u -> h.(u)) letters in
   let current = ref (-1) and flat = ref 0 in
-  (* What is proposed for a sign vector: with more and more digits, until floating point, or if careful the
-     verified test itself, finds all letters decided. It depends on the sign vector alone, and its array is
-     never changed after it is handed over; so the theorem, which is about functions, applies. *)
+  (* What is proposed for a sign vector. It depends on the sign vector alone, and its array is never changed after
+     it is handed over; so the theorem, which is about functions, applies. *)
   let verify careful =
     let proposed = ref (-1, [||], fun _ -> None) in
     current := -1;
@@ -137,17 +131,7 @@ let all_branches header blocks claims =
       if !current <> n then begin
         current := n;
         let root = root n in
-        let rec refine = function
-          | [] -> raise Exit
-          | bits :: more ->
-            let aim = bits - 14 in
-            let h = heights root bits in
-            if not (careful || more = [] || Proposing.clear rough h bits aim) then refine more
-            else begin
-              for _ = 0 to (bits - 40) / 40 do Proposing.step lights corner h bits aim done;
-              if careful && not (passes e h root.letters) then refine more else h
-            end in
-        let h = refine precisions in
+        let h = Proposing.refined lights rough corner careful (fun h -> passes e h root.letters) (heights root) in
         let done_ = (1 lsl size) - n in
         if done_ land 4095 = 0 && size > 13 then Printf.eprintf "\r%d of %d roots%!" done_ (1 lsl size);
         flat := !flat + root.flat;

@@ -9,19 +9,19 @@ module V = Verified
 let dot u x = let s = ref Q.zero in Array.iteri (fun k a -> if Q.sign a <> 0 then s := Q.add !s (Q.mul a x.(k))) u; !s
 let less row f other = Array.map2 (fun x y -> Q.sub x (Q.mul f y)) row other
 
-(* The reduced echelon form: rows with the places of their leading ones, which lie in the first [width] columns. *)
+(* A reduced echelon form with one row more, if it is independent: rows with the places of their leading ones, which lie
+   in the first [width] columns. *)
+let with_row width found row =
+  let row = List.fold_left (fun row (k, r) -> if Q.sign row.(k) = 0 then row else less row row.(k) r) row found in
+  let rec lead k = if k = width then None else if Q.sign row.(k) <> 0 then Some k else lead (k + 1) in
+  match lead 0 with
+  | None -> found
+  | Some k ->
+    let row = Array.map (fun x -> Q.div x row.(k)) row in
+    (k, row) :: List.map (fun (j, r) -> (j, if Q.sign r.(k) = 0 then r else less r r.(k) row)) found
+
 let echelon width rows =
-  let add found row =
-    let row = List.fold_left (fun row (k, r) -> less row row.(k) r) row found in
-    let rec lead k = if k = width then None else if Q.sign row.(k) <> 0 then Some k else lead (k + 1) in
-    match lead 0 with
-    | None -> found
-    | Some k ->
-      let row = Array.map (fun x -> Q.div x row.(k)) row in
-      (k, row) :: List.map (fun (j, r) -> (j, less r r.(k) row)) found in
-  List.sort compare (List.map fst (List.fold_left add [] rows)) |> fun places ->
-  let found = List.fold_left add [] rows in
-  List.map (fun k -> (k, List.assoc k found)) places
+  List.sort (fun (j, _) (k, _) -> Int.compare j k) (List.fold_left (with_row width) [] rows)
 
 let unit_row n k = Array.init n (fun j -> if j = k then Q.one else Q.zero)
 
@@ -259,14 +259,15 @@ let within c flat space xs =
     fun u -> Z.mul times (if u = last then unit else base u) in
   let spanning = start Z.one :: columns in
   let hubs = List.filter (fun (b : V.hub) -> not (List.mem b.at_vertex flat)) p.hubs in
-  let pairs = List.concat_map (fun g -> List.map (fun h -> (g, h)) spanning) spanning in
+  let rec pairs_of = function [] -> [] | g :: l -> List.map (fun h -> (g, h)) (g :: l) @ pairs_of l in
+  let pairs = pairs_of spanning in
   let row b = Array.of_list (List.map (fun (g, h) -> Q.of_bigint (V.polar b g h)) pairs) in
   let rows = List.map (fun b -> (b, row b)) hubs in
   let width = List.length pairs and size = List.length columns in
-  let choose chosen (b, r) =
-    let more = chosen @ [ (b, r) ] in
-    if List.length (echelon width (List.map snd more)) = List.length more then more else chosen in
-  let chosen = List.fold_left choose [] rows in
+  let choose (chosen, found) (b, r) =
+    let more = with_row width found r in
+    if List.compare_lengths more found = 0 then (chosen, found) else ((b, r) :: chosen, more) in
+  let chosen = List.rev (fst (List.fold_left choose ([], []) rows)) in
   if List.length chosen <> size then fun _ -> None
   else begin
     let parts = List.map fst chosen in
@@ -362,8 +363,6 @@ let rooted (d : V.drawing) (p : V.prepared) c flat root bits =
 
 (* --- evidence for a branch --- *)
 
-let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
-
 (* The heights seen from the side on which a reflex corner pops up. *)
 let upright c xs =
   let popped r = List.find (fun (b : V.hub) -> b.at_vertex = r) c.p.hubs in
@@ -382,7 +381,7 @@ let evidence (d : V.drawing) lights c flat straight near accepts =
     let h = Array.make (List.length d.points) Z.zero in
     Array.iteri (fun k v -> h.(v) <- scaled heights.(k) bits) c.own;
     h.(c.last) <- Z.shift_left Z.one bits;
-    for _ = 0 to (bits - 40) / 40 do Proposing.step lights None h bits (bits - 14) done;
+    Proposing.improve lights None h bits;
     Some (h.(c.last), V.Near (fun u -> h.(u))) in
   let is_straight (f : V.fold_form) = straight f.name || touches flat f in
   let basis = if c.corner = None then c.basis else Array.append (Array.map fixed c.own) [| (fun _ -> Z.zero) |] in
@@ -392,7 +391,7 @@ let evidence (d : V.drawing) lights c flat straight near accepts =
   let flat_where test = spaces (fun () -> flat_space c.p basis test) in
   let straightened = if List.exists is_straight c.p.folds then flat_where is_straight else [] in
   let rest =
-    if flat = [] then (if c.corner = None then List.map close precisions else []) @ flat_where (fun _ -> false)
+    if flat = [] then (if c.corner = None then List.map close Proposing.precisions else []) @ flat_where (fun _ -> false)
     else flat_where (touches flat) @ List.concat_map (fun s -> spaces (fun () -> s)) near.others in
   let turned = List.map (if heights == near.heights then Fun.id else Array.map Q.neg) in
   let algebraic = match near.root with
