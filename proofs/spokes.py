@@ -219,6 +219,7 @@ def ladder(names: dict[str, Any]) -> dict[str, Any]:
     return {**names, **high, "values": tuple(high.values())}
 
 
+@cache
 def without(n: int, i: int = 2, numbers: bool = False) -> dict[str, Any]:
     """The names of a wheel of n spokes for the induction of Appendix B, where spoke i is taken out.
 

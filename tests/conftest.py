@@ -2,10 +2,12 @@
 
 import functools
 import os
+from typing import Any
 
 import pytest
 import typer.testing
 from hypothesis import HealthCheck, settings
+from xdist.scheduler import WorkStealingScheduling
 
 # Tests start many processes. If they may not keep what they compile, each compiles exactfold again.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -19,6 +21,21 @@ settings.load_profile("some")
 
 # Typer prepares all commands again for each command line: once is enough for those of one process.
 typer.testing._get_command = functools.cache(typer.testing._get_command)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> WorkStealingScheduling | None:
+    """With `-n 2`, each process gets one half of the tests, and at last takes from the other half.
+
+    So what tests of one file share is computed once. By default the tests are dealt out a few at a
+    time, and both processes compute it.
+    """
+    return WorkStealingScheduling(config, log) if config.getvalue("dist") == "load" else None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What needs the formal proof comes first: one process builds it, and none waits for it."""
+    items.sort(key=lambda item: "formal" not in getattr(item, "fixturenames", ()))
 
 
 @pytest.fixture

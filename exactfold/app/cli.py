@@ -11,11 +11,7 @@ import typer
 
 from exactfold._support.processes import one_thread
 from exactfold._support.verdict import PROVED, UNDECIDED
-from exactfold.app.shell.parameters import (
-    Json,
-    flag,
-    number,
-)
+from exactfold.app.shell.parameters import Json, flag, number
 from exactfold.app.shell.shell import (
     EXIT,
     OUTPUT_FAILED,

@@ -68,7 +68,7 @@ DOCUMENTS: Final = {
     ),
     "match": ("exactfold match --json", "design.assignments.result:MatchDocument"),
     "starting": ("exactfold match --json of rigid panels", "design.panels.match:StartingDocument"),
-    "vertices": ("exactfold vertices --json", "design.panels.vertex.vertices:VerticesDocument"),
+    "vertices": ("exactfold vertices --json", "design.panels.vertex.document:VerticesDocument"),
     "flat": ("exactfold flat --json", "layers.document:FlatDocument"),
     "certify": ("exactfold certify --json", "app.commands.certify:CertifyDocument"),
     "export": ("exactfold export --json", "app.commands.export:ExportDocument"),

@@ -51,5 +51,5 @@ from exactfold.branches.values.branch import Branch as Branch
 from exactfold.branches.values.export import BranchExport as BranchExport
 from exactfold.branches.values.export import export_branch as export_branch
 from exactfold.branches.values.export import exported as exported
+from exactfold.branches.values.lettered import Lettered as Lettered
 from exactfold.branches.values.result import BranchCount as BranchCount
-from exactfold.branches.values.result import Lettered as Lettered

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import combinations, permutations, product
+from itertools import combinations
 from typing import Any, Final, TypeAlias
 
 from exactfold._support.clock import UNLIMITED, Clock
@@ -13,43 +12,19 @@ from exactfold.checker.core.kinds import DocumentKind
 from exactfold.checker.layers.counted import FLAT_COUNT, FlatCountClaims
 from exactfold.checker.layers.folding import FoldedSheet
 from exactfold.checker.layers.overlaps import Overlaps, members
-from exactfold.checker.layers.plane import Plane
 from exactfold.checker.layers.refuted import FLAT_REFUTED, FlatRefutedClaims
 from exactfold.checker.layers.state import FLAT_STATE, FlatStateClaims
 from exactfold.checker.sheets.panels import read_panels
 from exactfold.errors import NotApplicableError, SolverError
-from exactfold.layers.constraints import Constraint
-from exactfold.layers.placing import Order, Placing
+from exactfold.layers.clauses import Clauses
+from exactfold.layers.placing import Placing
 from exactfold.layers.proofs import Clause, Prover, needed
 from exactfold.layers.states import Component, FlatStates
 from exactfold.pattern.panel_entries import panels_document
-from exactfold.pattern.panel_pattern import Edge
 
 Document: TypeAlias = dict[str, Any]
-Orders: TypeAlias = tuple[Order, ...]
 MOST_PAIRS: Final = 1 << 16
 """The number of pairs that overlap up to which certificates state their orders."""
-
-
-@dataclass(frozen=True)
-class Axiom:
-    """A clause that holds because of the layers where some pieces and folds meet.
-
-    One fold and a piece through whose inside it runs, two folds along each other, or three pieces
-    with a common inner point.
-    """
-
-    folds: tuple[Edge, ...]
-    pieces: tuple[int, ...]
-    orders: Orders
-
-    def place(self, placing: Placing) -> int:
-        """The number of a place for the clause."""
-        if not self.folds:
-            return placing.inside(self.pieces, self.orders)
-        if len(self.folds) == 2:
-            return placing.along(*self.folds, self.orders)
-        return placing.through(self.folds[0], self.pieces[-1], self.orders)
 
 
 def states_certificate(found: FlatStates, clock: Clock = UNLIMITED) -> Document:
@@ -126,8 +101,7 @@ def _state(found: FlatStates, head: Document, letters: str, writer: _Writer) -> 
 class _Writer:
     """Finds evidence about a sheet whose folding map exists.
 
-    The checker's own map and overlaps say where layers could cross. A literal k is the order of
-    pair k - 1, "the piece with the smaller number lies below", and -k the opposite order.
+    The checker's own map and overlaps say where layers could cross.
     """
 
     def __init__(self, found: FlatStates, pattern: Document) -> None:
@@ -139,82 +113,13 @@ class _Writer:
         sheet, _ = read_panels(pattern)
         self.folded = FoldedSheet(sheet, found.letters, list(polygons))
         self.pairs = list(found.pairs)
-        self.plane = Plane(self.folded)
-        self._literals = {pair: k for k, pair in enumerate(self.pairs, 1)}
-        self._axioms: dict[Clause, Axiom] = {}
-
-    def literal(self, low: int, high: int) -> int:
-        """The literal of an order."""
-        return self._literals[low, high] if low < high else -self._literals[high, low]
-
-    def order(self, literal: int) -> Order:
-        """The order that a literal says."""
-        low, high = self.pairs[abs(literal) - 1]
-        return (low, high) if literal > 0 else (high, low)
-
-    def orders(self, clause: Iterable[int]) -> list[list[int]]:
-        """A clause as a certificate has it."""
-        return [list(self.order(literal)) for literal in clause]
-
-    # --- clauses ---------------------------------------------------------------------------------
-
-    def _equal(
-        self, one: Order, other: Order, folds: tuple[Edge, ...], pieces: tuple[int, ...]
-    ) -> Iterator[Clause]:
-        """Two orders hold together, or none of them."""
-        for a, b in ((one, other[::-1]), (one[::-1], other)):
-            yield self._axiom((a, b), folds, pieces)
-
-    def _nested(
-        self, one: Sequence[int], other: Sequence[int], folds: tuple[Edge, ...]
-    ) -> Iterator[Clause]:
-        """The pieces of two folded folds along each other, on one side, do not interleave."""
-        for (a, b), (c, d) in product(permutations(one), permutations(other)):
-            yield self._axiom(((c, a), (b, c), (d, b)), folds, ())
-            yield self._axiom(((a, c), (d, a), (b, d)), folds, ())
-
-    def line(self, a: int, b: int, c: int) -> Iterator[Clause]:
-        """Three pieces with a common point do not lie in a circle."""
-        yield self._axiom(((a, b), (b, c), (c, a)), (), (a, b, c))
-        yield self._axiom(((b, a), (c, b), (a, c)), (), (a, b, c))
-
-    def _axiom(self, orders: Orders, folds: tuple[Edge, ...], pieces: tuple[int, ...]) -> Clause:
-        clause = tuple(self.literal(*order) for order in orders)
-        self._axioms.setdefault(clause, Axiom(folds, pieces, orders))
-        return clause
-
-    def _along(self, fold: Edge, other: Edge) -> Iterator[Clause]:
-        """What two folds along each other have to fulfil."""
-        folds = fold, other
-        one, two = self._sides(fold), self._sides(other)
-        for mine, theirs in zip(one, two, strict=True):
-            if len(mine) == len(theirs) == 2:
-                yield from self._nested(mine, theirs, folds)
-            elif len(mine) + len(theirs) == 3:
-                (a, b), (c,) = (mine, theirs) if len(mine) == 2 else (theirs, mine)
-                yield from self._equal((a, c), (b, c), folds, ())
-        if len(one[0]) == len(two[0]) == 1:
-            yield from self._equal((one[0][0], two[0][0]), (one[1][0], two[1][0]), folds, ())
-
-    def _through(self, fold: Edge, piece: int) -> Iterator[Clause]:
-        """What a fold and a piece through whose inside it runs have to fulfil."""
-        a, b = self.folded.pieces_of(fold)
-        yield from self._equal((a, piece), (b, piece), (fold,), (piece,))
-
-    def _sides(self, fold: Edge) -> tuple[list[int], list[int]]:
-        """The pieces of a fold on the left, and on the right, of the line of its image."""
-        beside: tuple[list[int], list[int]] = [], []
-        for piece, side in zip(self.folded.pieces_of(fold), (fold, fold[::-1]), strict=True):
-            beside[self.plane.half(side)[1] < 0].append(piece)
-        return beside
-
-    # --- evidence --------------------------------------------------------------------------------
+        self.clauses = Clauses(self.folded, self.pairs)
 
     def contradiction(self, clock: Clock) -> Document:
         """Evidence that the conditions of the conflict contradict each other."""
-        prover = Prover(len(self.pairs), self._given(), clock=clock)
+        prover = Prover(len(self.pairs), self.clauses.given(), clock=clock)
         for one in self.found.conflict:
-            for clause in self._clauses(one.constraint):
+            for clause in self.clauses.of(one.constraint):
                 prover.add(clause)
         prover.refute(sorted({abs(x) for clause in prover.clauses for x in clause}))
         return self._evidence(prover, [prover.clauses.index(())])[0]
@@ -222,10 +127,10 @@ class _Writer:
     def count(self, clock: Clock) -> Document:
         """Evidence that there are no other states than those that are listed."""
         overlaps = Overlaps(self.folded)
-        self.plane = overlaps.plane
-        closing = _Closing(self, overlaps)
-        prover = Prover(len(self.pairs), self._given(), closing.more, clock)
-        for clause in self._crossings(overlaps):
+        self.clauses.plane = overlaps.plane
+        closing = _Closing(self.clauses, overlaps)
+        prover = Prover(len(self.pairs), self.clauses.given(), closing.more, clock)
+        for clause in self.clauses.crossings(overlaps):
             prover.add(clause)
         prover.propagate()
         for clause in closing.open(prover):
@@ -245,29 +150,8 @@ class _Writer:
         wanted += [number for part in parts for number in part.used]
         evidence, place = self._evidence(prover, wanted)
         first = len(evidence["clauses"]) + len(evidence["steps"])
-        evidence["components"] = [part.document(self, place, first) for part in parts]
+        evidence["components"] = [part.document(self.clauses, place, first) for part in parts]
         return evidence
-
-    def _given(self) -> list[int]:
-        return [self.literal(*order) for order in self.folded.lettered.values()]
-
-    def _crossings(self, overlaps: Overlaps) -> Iterator[Clause]:
-        """All clauses about folds."""
-        for fold, pieces in zip(overlaps.folds, overlaps.through, strict=True):
-            for piece in members(pieces):
-                yield from self._through(fold, piece)
-        for one, other in overlaps.along:
-            yield from self._along(overlaps.folds[one], overlaps.folds[other])
-
-    def _clauses(self, constraint: Constraint) -> Iterator[Clause]:
-        if constraint.kind == "transitivity":
-            a, b, c = constraint.pieces
-            return self.line(a, b, c)
-        if constraint.kind == "letter":
-            return iter(())
-        if len(constraint.edges) == 2:
-            return self._along(*constraint.edges)
-        return self._through(constraint.edges[0], constraint.pieces[2])
 
     def _evidence(self, prover: Prover, wanted: Iterable[int]) -> tuple[Document, dict[int, int]]:
         """The clauses that are needed for some, and the numbers of those in the file."""
@@ -275,17 +159,17 @@ class _Writer:
         found = [number for number in numbers if number in prover.hints]
         given = [number for number in numbers if number not in prover.hints]
         place = {number: k for k, number in enumerate([*given, *found])}
-        placing = Placing(self.plane)
+        placing = Placing(self.clauses.plane)
         clauses = []
         for number in given:
-            axiom = self._axioms[prover.clauses[number]]
+            axiom = self.clauses.axioms[prover.clauses[number]]
             clauses.append([axiom.place(placing), [list(order) for order in axiom.orders]])
         evidence = {
             "pieces": self.pieces,
             "places": placing.entries,
             "clauses": clauses,
             "steps": [
-                [self.orders(prover.clauses[k]), [place[hint] for hint in prover.hints[k]]]
+                [self.clauses.orders(prover.clauses[k]), [place[hint] for hint in prover.hints[k]]]
                 for k in found
             ],
         }
@@ -299,18 +183,18 @@ class _Closing:
     most one known order. In any other case the third order is free.
     """
 
-    def __init__(self, writer: _Writer, overlaps: Overlaps) -> None:
-        self.writer, self.overlaps = writer, overlaps
+    def __init__(self, clauses: Clauses, overlaps: Overlaps) -> None:
+        self.clauses, self.overlaps = clauses, overlaps
         self._above = [0] * len(overlaps.pieces)
         self._below = [0] * len(overlaps.pieces)
 
     def more(self, prover: Prover, literal: int) -> Iterator[Clause]:
         """The clauses by which a new order, and an old one, imply a third one."""
-        low, high = self.writer.order(literal)
+        low, high = self.clauses.order(literal)
         self._above[low] |= 1 << high
         self._below[high] |= 1 << low
         over = self.overlaps.over
-        literal_of = self.writer.literal
+        literal_of = self.clauses.literal
         for c in members(self._above[high] & over[low] & ~self._above[low]):
             if not prover.holds(literal_of(low, c)):
                 yield from self._line(low, high, c)
@@ -321,7 +205,7 @@ class _Closing:
     def open(self, prover: Prover) -> Iterator[Clause]:
         """The clauses of three pieces with at least two open orders."""
         near: dict[int, set[int]] = {}
-        for k, (a, b) in enumerate(self.writer.pairs, 1):
+        for k, (a, b) in enumerate(self.clauses.pairs, 1):
             if not prover.holds(k) and not prover.holds(-k):
                 near.setdefault(a, set()).add(b)
                 near.setdefault(b, set()).add(a)
@@ -335,7 +219,7 @@ class _Closing:
 
     def _line(self, a: int, b: int, c: int) -> Iterator[Clause]:
         if self.overlaps.have_common_point((a, b, c)):
-            yield from self.writer.line(a, b, c)
+            yield from self.clauses.line(a, b, c)
 
 
 class _Part:
@@ -374,7 +258,7 @@ class _Part:
         self._whose = {k: whose[k] for k in self._needed if k in whose}
         self.used = list(self._whose.values())
 
-    def document(self, writer: _Writer, place: Mapping[int, int], first: int) -> Document:
+    def document(self, clauses: Clauses, place: Mapping[int, int], first: int) -> Document:
         """The component in the file, where the clauses of all end before number `first`."""
         numbers = {k: place[number] for k, number in self._whose.items()}
         numbers |= {k: first + number for k, number in self._listed.items()}
@@ -387,9 +271,9 @@ class _Part:
                     self._names[abs(x) - 1] * (1 if x > 0 else -1) for x in self._prover.clauses[k]
                 ]
                 hints = [numbers[hint] for hint in self._prover.hints[k]]
-                steps.append([writer.orders(clause), hints])
+                steps.append([clauses.orders(clause), hints])
         return {
-            "pairs": [list(writer.pairs[pair]) for pair in self.component.pairs],
+            "pairs": [list(clauses.pairs[pair]) for pair in self.component.pairs],
             "states": [digits_of([sign > 0 for sign in state]) for state in self.component.states],
             "steps": steps,
         }

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from exactfold.design.panels.vertex.facts import kawasaki
+from exactfold.design.panels.vertex.kawasaki import kawasaki
 from exactfold.layers.images import closes, doubled_directions
 from exactfold.panels.vertex.stars import star_at
 from exactfold.pattern.panel_pattern import Edge, PanelPattern

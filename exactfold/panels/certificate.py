@@ -19,11 +19,12 @@ from exactfold.checker.panels.claims import (
     TreeClaim,
 )
 from exactfold.errors import NotApplicableError, TooManyModesError
+from exactfold.panels.counts import Counts
 from exactfold.panels.decomposition import MOST_LISTED
 from exactfold.panels.isolated import IsolatedWays
 from exactfold.panels.modes.elementary import ModeSearch, Support
 from exactfold.panels.modes.extension import FOREST, Loops, extension
-from exactfold.panels.result import Counts, Decomposition, Mode, Part
+from exactfold.panels.result import Decomposition, Mode, Part
 from exactfold.panels.vertex.holes import conditions
 from exactfold.panels.vertex.local import LocalMode, local_modes
 from exactfold.panels.vertex.stars import Star

@@ -15,10 +15,11 @@ from exactfold._support.progress import Progress
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.errors import TooManyModesError
 from exactfold.panels.by_spaces import by_spaces, by_tree, part_text
+from exactfold.panels.counts import product
 from exactfold.panels.modes.densities import UndecidedDensityError
 from exactfold.panels.modes.elementary import ElementaryMode, ModeSearch, Support
 from exactfold.panels.modes.extension import Extension, Loops, extend_together, extension
-from exactfold.panels.result import Decomposition, Mode, Part, product
+from exactfold.panels.result import Decomposition, Mode, Part
 from exactfold.panels.spaces.freedom import most_first_order, most_freedom
 from exactfold.panels.spaces.kernel import first_order
 from exactfold.panels.vertex.holes import conditions, free_folds

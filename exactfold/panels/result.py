@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import ClassVar, Literal
@@ -13,7 +12,6 @@ from exactfold._support.results import Certified, Ways
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.panels.count_document import (
     AsWrittenDocument,
-    ByDimension,
     ComponentsDocument,
     ModeDocument,
     MotionKeys,
@@ -23,6 +21,7 @@ from exactfold.panels.count_document import (
     ProposalDocument,
     WayDocument,
 )
+from exactfold.panels.counts import Counts, by_dimension, of_each_dimension
 from exactfold.panels.isolated import IsolatedWays
 from exactfold.panels.modes.elementary import Support
 from exactfold.panels.modes.extension import Extension
@@ -33,12 +32,9 @@ from exactfold.panels.spaces.subspaces import Leaf
 from exactfold.panels.vertex.local import LocalMode
 from exactfold.pattern.described import described_panels
 from exactfold.pattern.meant import Meant
-from exactfold.pattern.opening import ReadDocument
+from exactfold.pattern.opened import ReadDocument, digits
 from exactfold.pattern.panel_pattern import Edge, PanelPattern
 from exactfold.pattern.rounding import half_step
-
-Counts = Mapping[int, int]
-"""{dimension: number of components}."""
 
 
 @dataclass(frozen=True)
@@ -193,10 +189,10 @@ class Decomposition(Page, Ways[Mode], Certified):
 
     def _components(self) -> ComponentsDocument:
         return {
-            "second_order": _texts(self.second_order),
-            "true": _texts(self.true),
-            "found": _texts(self.found),
-            "found_true": _texts(self.found_true),
+            "second_order": by_dimension(self.second_order),
+            "true": by_dimension(self.true),
+            "found": by_dimension(self.found),
+            "found_true": by_dimension(self.found_true),
             "graphs": None
             if self.graphs is None
             else {"vertices": self.graphs, "dimension": self.pattern.D},
@@ -349,7 +345,7 @@ class Part:
         """{dimension: number} of the components that are known; None if none is."""
         if self.second_order is not None:
             return self.second_order
-        return _counted(one.dimension for one in self.found) or None
+        return of_each_dimension(one.dimension for one in self.found) or None
 
     @property
     def folding(self) -> Counts | None:
@@ -361,8 +357,8 @@ class Part:
         if self.by_tree:
             return self.second_order
         shown = zip(self.spaces, self.spaces_fold, strict=True)
-        known = _counted(leaf.dimension for leaf, folds in shown if folds)
-        by_components = _counted(one.dimension for one in self.found if one.folds)
+        known = of_each_dimension(leaf.dimension for leaf, folds in shown if folds)
+        by_components = of_each_dimension(one.dimension for one in self.found if one.folds)
         return {
             d: max(known.get(d, 0), by_components.get(d, 0)) for d in {**known, **by_components}
         } or None
@@ -394,37 +390,3 @@ class Part:
     def folds(self) -> bool:
         """Whether some motion of the part is known to fold truly."""
         return bool(self.folding and set(self.folding) != {0})
-
-
-def digits(
-    meant: Meant | None, read: ReadDocument | None
-) -> Literal["as written", "as read", "inferred"]:
-    """Whose digits a sheet has that was opened."""
-    if meant is not None and meant.inferred:
-        return "inferred"
-    return "as read" if read is not None and read["largest_move"] else "as written"
-
-
-def _texts(counts: Counts | None) -> ByDimension | None:
-    return None if counts is None else {str(k): n for k, n in counts.items()}
-
-
-def _counted(dimensions: Iterable[int]) -> dict[int, int]:
-    return dict(sorted(Counter(dimensions).items()))
-
-
-def product(counts: Iterable[Counts | None], free: int) -> Counts | None:
-    """The components of independent parts together; None if those of some part are not known.
-
-    Dimensions add, and numbers multiply.
-    """
-    total: dict[int, int] = {free: 1}
-    for part in counts:
-        if part is None:
-            return None
-        joined: dict[int, int] = {}
-        for a, m in total.items():
-            for b, n in part.items():
-                joined[a + b] = joined.get(a + b, 0) + m * n
-        total = joined
-    return dict(sorted(total.items()))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 from exactfold._support.documents import FieldName, NotNegative, Several
 from exactfold._support.notebook import Picture
@@ -114,6 +114,15 @@ class Opened(Picture):
             "field": self.field_name,
             "largest_move": self.largest_move,
         }
+
+
+def digits(
+    meant: Meant | None, read: ReadDocument | None
+) -> Literal["as written", "as read", "inferred"]:
+    """Whose digits a sheet has that was opened."""
+    if meant is not None and meant.inferred:
+        return "inferred"
+    return "as read" if read is not None and read["largest_move"] else "as written"
 
 
 def triangulated(pattern: PanelPattern) -> CreasePattern | None:

@@ -1,7 +1,8 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
   Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact
-  Patterns Space Contracting Rooted Within Listed Reflex Flex Example BranchExample.
+  Patterns Space Contracting Rooted Within Listed Reflex Flex
+  Curve Displacements Motion Near Gap Placed Ways Example BranchExample.
 
 Print Assumptions key_lemma.
 Print Assumptions one_solution_per_sign_vector.
@@ -26,6 +27,12 @@ Print Assumptions exact_notched_verified.
 Print Assumptions listed_verified.
 Print Assumptions reflex_verified.
 Print Assumptions disk_moves.
+Print Assumptions curve.
+Print Assumptions motion.
+Print Assumptions true_motion_exists.
+Print Assumptions ways.
+Print Assumptions near_flat.
+Print Assumptions all_continue.
 
 (** The others together. *)
 Definition others :=
@@ -36,6 +43,6 @@ Definition others :=
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
    boxed, no_star_is_flat, near_branch, near_solution, passed,
    open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
-   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch,
+   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch, gap, placing,
    @all_counted, @all_listed, @listed, @raised_listed).
 Print Assumptions others.

@@ -10,22 +10,33 @@ Open Scope R_scope.
 Definition stretch (at_ : nat -> point) (h : vec) (u : nat -> point) (a b : nat) : R :=
   2 * dot (sub (at_ b) (at_ a)) (sub (u b) (u a)) + (h b - h a) * (h b - h a).
 
-Lemma stretch_sym at_ h u a b : stretch at_ h u b a = stretch at_ h u a b.
-Proof. unfold stretch, dot, sub. cbn [fst snd]. ring. Qed.
-
 (** How fast the spoke from [v] to [a] turns in the plane. *)
 Definition turning (at_ : nat -> point) (u : nat -> point) (v a : nat) : R :=
   dot (sub (u a) (u v)) (J (spoke at_ v a)) / dot (spoke at_ v a) (spoke at_ v a).
 
-(** In a face the lengths, the turning of two spokes and the curvature are one equation. *)
-Lemma stretch_turning at_ h u v a b : cross (spoke at_ v a) (spoke at_ v b) <> 0 ->
+(** Half of the change of the squared length between two vertices that move by [u] in the plane, to first order. *)
+Definition widen (at_ : nat -> point) (u : nat -> point) (a b : nat) : R := dot (sub (at_ b) (at_ a)) (sub (u b) (u a)).
+
+(** What a face gives to the sum of numbers [c] on the edges at [v], times the wheel stress of [v]. *)
+Definition share (at_ : nat -> point) (c : nat -> nat -> R) (v a b : nat) : R :=
   let d := spoke at_ v a in let d' := spoke at_ v b in
-  stretch at_ h u a b =
-    stretch at_ h u v a * (1 - dot d d' / dot d d) + stretch at_ h u v b * (1 - dot d d' / dot d' d') +
-    2 * cross d d' * (turning at_ u v b - turning at_ u v a - wedge d d' (h a - h v) (h b - h v)).
+  (c a b - c v a * (1 - dot d d' / dot d d) - c v b * (1 - dot d d' / dot d' d')) / (2 * cross d d').
+
+(** Of lengths it is how much the angle grows, of heights the curvature. *)
+Lemma share_widen at_ u v a b : cross (spoke at_ v a) (spoke at_ v b) <> 0 ->
+  share at_ (widen at_ u) v a b = / 2 * (turning at_ u v b - turning at_ u v a).
 Proof.
-  intros C. cbv zeta. pose proof (cross_left _ _ C) as M. pose proof (cross_right _ _ C) as M'.
-  unfold stretch, turning, wedge, spoke, sub, cross, dot, J in *. cbn [fst snd] in *. field. auto.
+  intros C. pose proof (cross_left _ _ C) as M. pose proof (cross_right _ _ C) as M'.
+  unfold share, widen, turning, spoke, sub, cross, dot, J in *. cbn [fst snd] in *. field. auto.
+Qed.
+
+Lemma share_heights at_ g h v a b : cross (spoke at_ v a) (spoke at_ v b) <> 0 ->
+  share at_ (fun x y => (g y - g x) * (h y - h x)) v a b =
+    - wedge2 (spoke at_ v a) (spoke at_ v b) (g a - g v) (g b - g v) (h a - h v) (h b - h v).
+Proof.
+  intros C. pose proof (cross_left _ _ C) as M. pose proof (cross_right _ _ C) as M'. cbv zeta.
+  unfold share. set (d := spoke at_ v a) in *. set (d' := spoke at_ v b) in *. unfold wedge2.
+  clearbody d d'. field. auto.
 Qed.
 
 Section Flex.
@@ -46,21 +57,12 @@ Proof.
     In c (flat_map (fun f : face => let '(a, b, c) := f in [(a, b, c); (b, c, a); (c, a, b)]) fs)).
   { intros c Hc'. apply in_flat_map. exists (x, y, z). now split. }
   simpl in Hc. destruct Hc as [E|[E|[E|[]]]]; injection E as <- <- <-.
-  - repeat split; [exists (x, y, z)|exists (y, z, x)|exists (z, x, y)]; (split; [reflexivity|apply All; simpl; tauto]).
-  - repeat split; [exists (y, z, x)|exists (z, x, y)|exists (x, y, z)]; (split; [reflexivity|apply All; simpl; tauto]).
-  - repeat split; [exists (z, x, y)|exists (x, y, z)|exists (y, z, x)]; (split; [reflexivity|apply All; simpl; tauto]).
-Qed.
-
-Lemma keeps_turning fs h u v a b : keeps fs h u -> In (v, a, b) (corners fs) ->
-  cross (spoke v a) (spoke v b) <> 0 ->
-  wedge (spoke v a) (spoke v b) (h a - h v) (h b - h v) = turning at_ u v b - turning at_ u v a.
-Proof.
-  intros Kp Hc C. destruct (corner_sides fs v a b Hc) as (S1 & S2 & S3).
-  pose proof (stretch_turning at_ h u v a b C) as E. cbv zeta in E.
-  rewrite (Kp _ _ S1), (Kp _ _ S2), stretch_sym, (Kp _ _ S3) in E.
-  set (t := turning at_ u v b - turning at_ u v a) in *. set (w := wedge _ _ _ _) in *.
-  set (c := cross (spoke v a) (spoke v b)) in *. set (p := 1 - _ / _) in E. set (q := 1 - _ / _) in E.
-  assert (F : c * (t - w) = 0) by lra. apply Rmult_integral in F. destruct F; [contradiction|lra].
+  - repeat split; [exists (x, y, z)|exists (y, z, x)|exists (z, x, y)];
+      (split; [reflexivity|apply All; simpl; tauto]).
+  - repeat split; [exists (y, z, x)|exists (z, x, y)|exists (x, y, z)];
+      (split; [reflexivity|apply All; simpl; tauto]).
+  - repeat split; [exists (z, x, y)|exists (x, y, z)|exists (y, z, x)];
+      (split; [reflexivity|apply All; simpl; tauto]).
 Qed.
 
 Lemma around v : In v (inner S) -> exists z l, fan S v = z :: l ++ [z].
@@ -69,24 +71,73 @@ Proof.
   exists z, (up ++ p :: q :: down). rewrite F, <- app_assoc. reflexivity.
 Qed.
 
-Lemma turning_closes u v : In v (inner S) ->
-  sum (steps (fan S v)) (fun s => let '(a, b) := s in turning at_ u v a - turning at_ u v b) = 0.
-Proof. intros Hi. destruct (around v Hi) as (z & l & F). rewrite F, (telescope (turning at_ u v)). ring. Qed.
+(** The sum of numbers [c] on the edges, times the wheel stress of [v]. *)
+Definition load (c : nat -> nat -> R) (v : nat) : R :=
+  sum (steps (fan S v)) (fun s => let '(a, b) := s in share at_ c v a b).
+
+Lemma load_add c s c' v : load (fun a b => c a b + s * c' a b) v = load c v + s * load c' v.
+Proof.
+  unfold load. rewrite <- sum_scal, <- sum_plus. apply sum_ext. intros [a b] _. unfold share, Rdiv. ring.
+Qed.
+
+Lemma load_widen u v : In v (inner S) -> load (widen at_ u) v = 0.
+Proof.
+  intros Hi. unfold load. rewrite (sum_ext _ _ (fun s => - / 2 * (let '(a, b) := s in
+    turning at_ u v a - turning at_ u v b))).
+  - destruct (around v Hi) as (z & l & F). rewrite sum_scal, F, (telescope (turning at_ u v)). ring.
+  - intros [a b] Hs. rewrite share_widen; [ring|]. pose proof (step_left S v a b (inner_vertex S v Hi) Hs). lra.
+Qed.
+
+Lemma load_heights g h v : In v (inner S) -> load (fun x y => (g y - g x) * (h y - h x)) v = - K2 S v g h.
+Proof.
+  intros Hi. replace (- K2 S v g h) with (-1 * K2 S v g h) by ring. unfold load, K2. rewrite <- sum_scal.
+  apply sum_ext. intros [a b] Hs. rewrite share_heights; [ring|].
+  pose proof (step_left S v a b (inner_vertex S v Hi) Hs). lra.
+Qed.
 
 (** The faces are all those at [v]. *)
 Definition all_at (fs : list face) (v : nat) : Prop :=
   forall s, In s (steps (fan S v)) -> In (v, fst s, snd s) (corners fs).
 
+Definition both_ways (c : nat -> nat -> R) : Prop := forall a b, c b a = c a b.
+
+Lemma share_ext fs c c' v a b : both_ways c -> both_ways c' -> (forall x y, In (x, y) (sides fs) -> c x y = c' x y) ->
+  In (v, a, b) (corners fs) -> share at_ c v a b = share at_ c' v a b.
+Proof.
+  intros Ev Ev' E Hc. destruct (corner_sides fs v a b Hc) as (S1 & S2 & S3). unfold share.
+  now rewrite (E _ _ S1), (E _ _ S2), (Ev b v), (Ev' b v), (E _ _ S3).
+Qed.
+
+Lemma load_ext fs c c' v : both_ways c -> both_ways c' -> all_at fs v ->
+  (forall x y, In (x, y) (sides fs) -> c x y = c' x y) -> load c v = load c' v.
+Proof. intros Ev Ev' All E. apply sum_ext. intros [a b] Hs. apply (share_ext fs); try assumption. exact (All _ Hs).
+Qed.
+
+Lemma even_widen u : both_ways (widen at_ u).
+Proof. intros a b. unfold widen, dot, sub. cbn [fst snd]. ring. Qed.
+Lemma even_heights s (g h : vec) : both_ways (fun x y => s * ((g y - g x) * (h y - h x))).
+Proof. intros a b. ring. Qed.
+
+Lemma keeps_widen fs h u : keeps fs h u <->
+  forall a b, In (a, b) (sides fs) -> widen at_ u a b = - / 2 * ((h b - h a) * (h b - h a)).
+Proof. unfold keeps, stretch, widen. split; intros H a b Hs; specialize (H a b Hs); lra. Qed.
+
+Lemma load_squares h v : In v (inner S) -> load (fun x y => - / 2 * ((h y - h x) * (h y - h x))) v = / 2 * K S v h.
+Proof.
+  intros Hi. rewrite <- K_polar_sheet by now apply inner_vertex.
+  transitivity (load (fun x y => 0 + - / 2 * ((h y - h x) * (h y - h x))) v).
+  - apply sum_ext. intros [a b] _. unfold share, Rdiv. ring.
+  - rewrite (load_add (fun _ _ => 0)), load_heights by assumption.
+    replace (load (fun _ _ => 0) v) with 0; [ring|]. symmetry. apply sum_zero. intros [a b] _. unfold share, Rdiv.
+    ring.
+Qed.
+
 (** A motion that keeps all lengths has curvature 0. *)
 Theorem flex_curvature fs h u v : keeps fs h u -> In v (inner S) -> all_at fs v -> K S v h = 0.
 Proof.
-  intros Kp Hi All. pose proof (inner_vertex S v Hi) as Hv.
-  rewrite <- (turning_closes (fun x => sub (0, 0) (u x)) v Hi).
-  apply sum_ext. intros [a b] Hs. pose proof (step_left S v a b Hv Hs) as C.
-  rewrite (keeps_turning fs h u v a b Kp); [|exact (All _ Hs)|lra].
-  unfold turning, sub, dot, J, Sheet.spoke. cbn [fst snd].
-  pose proof (cross_left _ _ (Rgt_not_eq _ _ C)). pose proof (cross_right _ _ (Rgt_not_eq _ _ C)).
-  unfold Sheet.spoke, sub, dot in *. cbn [fst snd] in *. field. auto.
+  intros Kp Hi All. rewrite keeps_widen in Kp.
+  pose proof (load_ext fs _ _ v (even_widen u) (even_heights _ h h) All Kp) as E.
+  rewrite load_widen, load_squares in E by assumption. lra.
 Qed.
 
 (** ** Gluing
@@ -108,6 +159,9 @@ Lemma sides_cons a b c fs x y : In (x, y) (sides ((a, b, c) :: fs)) ->
   (x, y) = (a, b) \/ (x, y) = (b, c) \/ (x, y) = (c, a) \/ In (x, y) (sides fs).
 Proof. unfold sides, corners. simpl. intuition congruence. Qed.
 
+Lemma in_sides_cons f fs s : In s (sides fs) -> In s (sides (f :: fs)).
+Proof. destruct f as [[a b] c]. unfold sides, corners. simpl. tauto. Qed.
+
 Lemma glued_on vs fs : glued vs fs -> forall x y, In (x, y) (sides fs) -> In x vs /\ In y vs.
 Proof.
   induction 1 as [a b c _|vs fs a b c _ IH _ Sd _|vs fs v a b _ IH _ _ _ S1 S2 _ _]; intros x y H.
@@ -126,17 +180,12 @@ Proof.
 Qed.
 
 (** The third vertex of a face, if those of one side have moved. *)
-Lemma tip_moves (h : vec) (u : nat -> point) a b c : cross (spoke c a) (spoke c b) <> 0 ->
-  exists w : point,
-    2 * dot (sub (at_ a) (at_ c)) (sub (u a) w) + (h a - h c) * (h a - h c) = 0 /\
-    2 * dot (sub (at_ b) (at_ c)) (sub (u b) w) + (h b - h c) * (h b - h c) = 0.
+Lemma tip_moves (u : nat -> point) x y a b c : cross (spoke c a) (spoke c b) <> 0 ->
+  exists w : point, dot (spoke c a) (sub (u a) w) = x /\ dot (spoke c b) (sub (u b) w) = y.
 Proof.
   intros C. set (d := spoke c a) in *. set (d' := spoke c b) in *.
-  set (p := dot d (u a) + (h a - h c) * (h a - h c) / 2).
-  set (q := dot d' (u b) + (h b - h c) * (h b - h c) / 2).
-  exists (gradient d d' p q).
-  pose proof (gradient_left d d' p q C) as L. pose proof (gradient_right d d' p q C) as R.
-  change (sub (at_ a) (at_ c)) with d. change (sub (at_ b) (at_ c)) with d'. clearbody d d'.
+  set (p := dot d (u a) - x). set (q := dot d' (u b) - y). exists (gradient d d' p q).
+  pose proof (gradient_left d d' p q C) as L. pose proof (gradient_right d d' p q C) as R. clearbody d d'.
   set (g := gradient d d' p q) in *. clearbody g. unfold p, q in *. unfold dot, sub in *. cbn [fst snd] in *.
   split; lra.
 Qed.
@@ -156,65 +205,73 @@ Proof.
   apply Rmult_integral in E. destruct E as [E|]; [|assumption]. apply lt_0_INR in Pk. lra.
 Qed.
 
-(** Heights with curvature 0 move: face by face. *)
-Lemma glued_flex h : (forall v, In v J -> K S v h = 0) ->
-  forall vs fs, glued vs fs -> exists u, keeps fs h u.
+Lemma distinct a b c : In (a, b, c) (corners (faces S)) -> a <> c /\ b <> c /\ a <> b.
 Proof.
-  intros Z.
-  assert (Tip : forall vs fs u a b c, keeps fs h u -> (forall x y, In (x, y) (sides fs) -> In x vs /\ In y vs) ->
-    In (a, b, c) (corners (faces S)) -> a <> c -> b <> c -> stretch at_ h u a b = 0 -> ~ In c vs ->
-    exists u', keeps ((a, b, c) :: fs) h u').
-  { intros vs fs u a b c Kp On Hc Na Nb Ab New.
-    destruct (tip_moves h u a b c) as (w & W & W'); [pose proof (corner_left a b c Hc); lra|].
-    exists (fun x => if Nat.eq_dec x c then w else u x). intros x y H. apply sides_cons in H. unfold stretch.
-    destruct H as [E|[E|[E|H]]]; try (injection E as -> ->).
-    - destruct (Nat.eq_dec a c), (Nat.eq_dec b c); try contradiction. exact Ab.
-    - destruct (Nat.eq_dec b c), (Nat.eq_dec c c); try contradiction.
-      unfold dot, sub in *. cbn [fst snd] in *. lra.
-    - destruct (Nat.eq_dec c c), (Nat.eq_dec a c); try contradiction.
-      unfold dot, sub in *. cbn [fst snd] in *. lra.
-    - destruct (On x y H) as (Hx & Hy).
-      destruct (Nat.eq_dec x c) as [->|], (Nat.eq_dec y c) as [->|]; try contradiction. now apply Kp. }
-  assert (Dif : forall a b c, In (a, b, c) (corners (faces S)) -> a <> c /\ b <> c /\ a <> b).
-  { intros a b c Hc. pose proof (face_of_corner S _ _ _ Hc) as C. unfold Sheet.spoke, sub, cross in C.
-    cbn [fst snd] in C.
-    repeat split; intros ->; lra. }
-  induction 1 as [a b c Hc|vs fs a b c G (u & Kp) Hc Sd New|vs fs v a b G (u & Kp) Hc Hi Hj S1 S2 Others Hs].
+  intros Hc. pose proof (face_of_corner S _ _ _ Hc) as C. unfold Sheet.spoke, sub, cross in C. cbn [fst snd] in C.
+  repeat split; intros ->; lra.
+Qed.
+
+(** Changes of the lengths that are 0 times all wheel stresses come from a motion in the plane: face by face. *)
+Lemma glued_moves c : both_ways c -> (forall v, In v J -> load c v = 0) ->
+  forall vs fs, glued vs fs -> exists u, forall a b, In (a, b) (sides fs) -> widen at_ u a b = c a b.
+Proof.
+  intros Ev Z. set (moved := fun fs u => forall a b, In (a, b) (sides fs) -> widen at_ u a b = c a b).
+  assert (Rev : forall u a b, widen at_ u b a = c b a -> widen at_ u a b = c a b)
+    by (intros u a b H; now rewrite <- (even_widen u a b), H, Ev).
+  assert (Tip : forall vs fs u x y z, moved fs u -> (forall a b, In (a, b) (sides fs) -> In a vs /\ In b vs) ->
+    In (x, y, z) (corners (faces S)) -> widen at_ u x y = c x y -> ~ In z vs -> exists u',
+      moved ((x, y, z) :: fs) u').
+  { intros vs fs u x y z Kp On Hc Xy New. destruct (distinct x y z Hc) as (Nx & Ny & _).
+    destruct (tip_moves u (c z x) (c z y) x y z) as (w & W & W'); [pose proof (corner_left x y z Hc); lra|].
+    set (u' := fun v => if Nat.eq_dec v z then w else u v). exists u'.
+    assert (Uz : u' z = w) by (unfold u'; destruct (Nat.eq_dec z z); [reflexivity|easy]).
+    assert (U : forall v, v <> z -> u' v = u v) by (intros v N; unfold u'; destruct (Nat.eq_dec v z);
+      [contradiction|reflexivity]).
+    intros a b H. apply sides_cons in H. destruct H as [E|[E|[E|H]]]; try (injection E as -> ->).
+    - unfold widen. now rewrite !U.
+    - apply Rev. unfold widen. now rewrite U, Uz.
+    - unfold widen. now rewrite U, Uz.
+    - destruct (On a b H) as (Ha & Hb). unfold widen. rewrite !U by (intros ->; contradiction). now apply Kp. }
+  induction 1 as [x y z Hc|vs fs x y z G (u & Kp) Hc Sd New|vs fs v x y G (u & Kp) Hc Hi Hj S1 S2 Others Hs].
   - (* the first face: two vertices as they are wanted, and the tip *)
-    destruct (Dif a b c Hc) as (Na & Nb & Nab).
-    set (d := sub (at_ b) (at_ a)). set (x := (h b - h a) * (h b - h a)).
+    destruct (distinct x y z Hc) as (Nx & Ny & Nxy). set (d := sub (at_ y) (at_ x)).
     assert (M : dot d d <> 0).
-    { pose proof (face_of_corner S _ _ _ Hc) as C. apply (cross_left _ (spoke a c)).
-      unfold d, Sheet.spoke in *. lra. }
-    set (u := fun y => if Nat.eq_dec y b then (- x / (2 * dot d d) * fst d, - x / (2 * dot d d) * snd d) else (0, 0)).
-    apply (Tip [a; b] [] u a b c); try assumption; try easy.
-    + unfold stretch, u. destruct (Nat.eq_dec b b), (Nat.eq_dec a b); try contradiction. fold d x.
+    { pose proof (face_of_corner S _ _ _ Hc) as C. apply (cross_left _ (spoke x z)). unfold d, Sheet.spoke in *.
+      lra. }
+    set (u := fun v => if Nat.eq_dec v y then (c x y / dot d d * fst d, c x y / dot d d * snd d) else (0, 0)).
+    apply (Tip [x; y] [] u x y z); try assumption; try easy.
+    + unfold widen, u. destruct (Nat.eq_dec y y), (Nat.eq_dec x y); try contradiction. fold d.
       unfold sub, dot in *. cbn [fst snd] in *. field. assumption.
     + simpl. intuition congruence.
-  - destruct (Dif a b c Hc) as (Na & Nb & _).
-    apply (Tip vs fs u a b c); try assumption; [now apply glued_on|].
-    destruct Sd as [Sd|Sd]; [now apply Kp|]. rewrite <- stretch_sym. now apply Kp.
+  - apply (Tip vs fs u x y z); try assumption; [now apply glued_on|]. destruct Sd; [|apply Rev]; now apply Kp.
   - exists u. pose proof (inner_vertex S v Hi) as Hv.
-    assert (Va : stretch at_ h u v a = 0) by (destruct S1 as [S1|S1]; [|rewrite <- stretch_sym]; now apply Kp).
-    assert (Vb : stretch at_ h u v b = 0) by (destruct S2 as [S2|S2]; [|rewrite <- stretch_sym]; now apply Kp).
-    pose proof (step_left S v a b Hv Hs) as C.
-    assert (W : wedge (spoke v a) (spoke v b) (h a - h v) (h b - h v) = turning at_ u v b - turning at_ u v a).
-    { set (f := fun s : nat * nat => let '(x, y) := s in
-        wedge (spoke v x) (spoke v y) (h x - h v) (h y - h v) + (turning at_ u v x - turning at_ u v y)).
-      assert (F : f (a, b) = 0); [|unfold f in F; lra].
-      apply (sum_one (steps (fan S v)) f (a, b) Hs).
-      - intros [x y] Hxy. destruct (Others _ Hxy) as [E|E]; [now left|right]. cbn [fst snd] in E. unfold f.
-        pose proof (step_left S v x y Hv Hxy). rewrite (keeps_turning fs h u v x y Kp E); lra.
-      - transitivity (sum (steps (fan S v)) (fun s => let '(x, y) := s in
-            wedge (spoke v x) (spoke v y) (h x - h v) (h y - h v)) +
-          sum (steps (fan S v)) (fun s => let '(x, y) := s in turning at_ u v x - turning at_ u v y)).
-        + rewrite <- sum_plus. apply sum_ext. intros [x y] _. reflexivity.
-        + rewrite turning_closes by assumption. change (K S v h + 0 = 0). rewrite (Z v Hj). ring. }
-    intros x y H. apply sides_cons in H. destruct H as [E|[E|[E|H]]]; try (injection E as -> ->).
-    + exact Va.
-    + rewrite (stretch_turning at_ h u v a b) by lra. cbv zeta. rewrite Va, Vb, W. ring.
-    + rewrite <- stretch_sym. exact Vb.
-    + now apply Kp.
+    assert (Vx : widen at_ u v x = c v x) by (destruct S1; [|apply Rev]; now apply Kp).
+    assert (Vy : widen at_ u v y = c v y) by (destruct S2; [|apply Rev]; now apply Kp).
+    pose proof (step_left S v x y Hv Hs) as C.
+    assert (W : share at_ c v x y + -1 * share at_ (widen at_ u) v x y = 0).
+    { set (f := fun s : nat * nat => let '(a, b) := s in share at_ c v a b + -1 * share at_ (widen at_ u) v a b).
+      apply (sum_one (steps (fan S v)) f (x, y) Hs).
+      - intros [a b] Hab. destruct (Others _ Hab) as [E|E]; [now left|right]. cbn [fst snd] in E. unfold f.
+        rewrite (share_ext fs c (widen at_ u) v a b Ev (even_widen u)); [ring| |exact E]. intros. symmetry.
+        now apply Kp.
+      - transitivity (load c v + -1 * load (widen at_ u) v).
+        + unfold load. rewrite <- sum_scal, <- sum_plus. apply sum_ext. intros [a b] _. reflexivity.
+        + rewrite load_widen, Z by assumption. ring. }
+    assert (Xy : widen at_ u x y = c x y).
+    { unfold share in W. rewrite Vx, Vy in W. apply (Rmult_eq_reg_r (/ (2 * cross (spoke v x) (spoke v y)))).
+      - unfold Rdiv in W. lra.
+      - apply Rinv_neq_0_compat. lra. }
+    intros a b H. apply sides_cons in H. destruct H as [E|[E|[E|H]]]; try (injection E as -> ->);
+      [assumption|assumption|now apply Rev|now apply Kp].
+Qed.
+
+(** Heights with curvature 0 move. *)
+Lemma glued_flex h : (forall v, In v J -> In v (inner S)) -> (forall v, In v J -> K S v h = 0) ->
+  forall vs fs, glued vs fs -> exists u, keeps fs h u.
+Proof.
+  intros Sub Z vs fs G. destruct (glued_moves _ (even_heights (- / 2) h h)) with (2 := G) as (u & Hu).
+  - intros v Hv. rewrite load_squares by auto. rewrite (Z v Hv). ring.
+  - exists u. now rewrite keeps_widen.
 Qed.
 
 (** A disk of the faces [F] with the vertices [J] inside: all faces can be glued. *)
@@ -224,7 +281,8 @@ Definition disk (F : list face) : Prop := (forall v, In v J -> In v (inner S) /\
 Theorem flex_iff F h : disk F -> ((forall v, In v J -> K S v h = 0) <-> exists u, keeps F h u).
 Proof.
   intros (Inside & vs & fs & G & All). split.
-  - intros Z. destruct (glued_flex h Z vs fs G) as (u & Kp). exists u. intros a b H. now apply Kp, All.
+  - intros Z. destruct (glued_flex h (fun v Hv => proj1 (Inside v Hv)) Z vs fs G) as (u & Kp). exists u.
+    intros a b H. now apply Kp, All.
   - intros (u & Kp) v Hv. destruct (Inside v Hv). now apply (flex_curvature F h u v).
 Qed.
 End Flex.
@@ -259,7 +317,8 @@ Fixpoint glue (ms : list (bool * face)) : option (list nat * list face) :=
       | Some (vs, fs) =>
         let star := steps (nth a (fans_of d) []) in
         if closing then
-          if mem a (inside d) && mem a J && has_side a b fs && has_side a c fs && mem2 (b, c) star && forallb (fun s =>
+          if mem a (inside d) && mem a J && has_side a b fs && has_side a c fs && mem2 (b,
+            c) star && forallb (fun s =>
             (Nat.eqb (fst s) b && Nat.eqb (snd s) c) || has_face (a, fst s, snd s) (corners fs)) star
           then Some (vs, (a, b, c) :: fs) else None
         else if has_side a b fs && negb (mem c vs) then Some (c :: vs, (a, b, c) :: fs) else None

@@ -318,12 +318,17 @@ Proof.
     rewrite (linear_zero (q p x)) in Hw by (intros a s b; apply q_move). lra.
 Qed.
 
+Lemma fixed_solves : in_box fixed /\ forall p, In p I -> q p fixed fixed = k p.
+Proof.
+  split; [apply fixed_in_box|]. apply residual_zero; [apply fixed_in_box|]. intros i Hi.
+  pose proof (fixed_next i Hi) as E. unfold next in E. destruct in_dec; [lra|contradiction].
+Qed.
+
 (** Krawczyk's theorem: the box holds exactly one solution. *)
 Theorem krawczyk : exists! x, in_box x /\ forall p, In p I -> q p x x = k p.
 Proof.
   exists fixed. split.
-  - split; [apply fixed_in_box|]. apply residual_zero; [apply fixed_in_box|]. intros i Hi.
-    pose proof (fixed_next i Hi) as E. unfold next in E. destruct in_dec; [lra|contradiction].
+  - exact fixed_solves.
   - intros y (By & Sy). pose proof fixed_in_box as Bx.
     assert (Sx : forall i, In i I -> residual i fixed = 0).
     { intros i Hi. pose proof (fixed_next i Hi) as E. unfold next in E.

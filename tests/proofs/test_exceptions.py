@@ -7,7 +7,8 @@ from functools import cache
 
 import pytest
 
-from proofs.exceptions import Disk, cases, enclosed, graph, is_settled, one_line, triangulations
+from proofs.disks import Disk, enclosed, graph, triangulations
+from proofs.exceptions import cases, is_settled, one_line
 
 PRIME = 32003
 CORNERS = {0: "1,0,0,0", 1: "1,1,0,0", 2: "1,1,1,0", 3: "1,0,1,1"}

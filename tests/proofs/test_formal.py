@@ -55,6 +55,12 @@ ASSUMED = {
     "listed_verified": CLASSICAL,
     "reflex_verified": CLASSICAL,
     "disk_moves": REALS,
+    "curve": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "motion": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "true_motion_exists": REALS | {"ClassicalDedekindReals.sig_not_dec"},
+    "ways": CLASSICAL,
+    "near_flat": CLASSICAL,
+    "all_continue": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

@@ -61,12 +61,6 @@ def failed(names: Iterable[str]) -> dict[str, list[str]]:
 
 
 @pytest.mark.slow
-def test_every_short_proof_holds() -> None:
-    """One test for all, as each process would run them again."""
-    assert failed(set(MODULES) - set(LONG)) == {}
-
-
-@pytest.mark.slow
 def test_every_proof_holds_and_the_pages_show_it() -> None:
     assert failed(MODULES) == {}
     proofs = {name: load(name) for name in MODULES}

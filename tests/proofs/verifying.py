@@ -7,8 +7,10 @@ from typing import Any
 from exactfold import checker
 
 
-def run(program: Path, certificate: Path) -> tuple[int, str]:
-    done = subprocess.run([program, certificate], capture_output=True, text=True, check=False)
+def run(program: Path, certificate: Path, *drawing: Path) -> tuple[int, str]:
+    done = subprocess.run(
+        [program, certificate, *drawing], capture_output=True, text=True, check=False
+    )
     return done.returncode, done.stdout + done.stderr
 
 

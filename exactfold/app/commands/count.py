@@ -15,10 +15,10 @@ from exactfold.app.commands.cells import asked_cell
 from exactfold.app.commands.stream import Streaming, advice
 from exactfold.app.options.patterns import CountOptions
 from exactfold.app.shell.given import Given
-from exactfold.app.shell.parameters import ALL
+from exactfold.app.shell.parsers import ALL
 from exactfold.app.shell.patterns import located, read, read_any
 from exactfold.app.shell.shell import EXIT, STDIN, Bar, apart, name_of, say
-from exactfold.app.verbs.counting import counted_with_letters
+from exactfold.app.verbs.completing import counted_with_letters
 from exactfold.branches.values.result import BranchCount
 from exactfold.certificates.entries import write_certificate
 from exactfold.errors import NotApplicableError, SeveralSheetsError, UsageError

@@ -14,7 +14,8 @@ from exactfold.branches.counting.motion_facts import (
     PanelFactsDocument,
     panel_facts,
 )
-from exactfold.design.panels.vertex.vertices import VerticesSummary, vertices
+from exactfold.design.panels.vertex.document import VerticesSummary
+from exactfold.design.panels.vertex.vertices import vertices
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import has_branches, panels
 from exactfold.rigidity.facts import PatternFacts, PatternFactsDocument, pattern_facts

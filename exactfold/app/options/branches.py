@@ -11,7 +11,6 @@ from exactfold._support.clock import LIMIT
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import ONE_OF, Letters, WayOptions
 from exactfold.app.shell.parameters import (
-    PROGRAM_NAMES,
     BoundaryHeights,
     Curvature,
     DrawnCells,
@@ -20,13 +19,11 @@ from exactfold.app.shell.parameters import (
     Pattern,
     Periodic,
     PrescribedAngles,
-    degrees,
-    direction_vector,
     flag,
     number,
-    program_name,
     written,
 )
+from exactfold.app.shell.parsers import PROGRAM_NAMES, degrees, direction_vector, program_name
 from exactfold.app.shell.shell import apart
 from exactfold.errors import UsageError
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from exactfold.app.shell.json_numbers import numbers_by_name
-from exactfold.app.shell.parameters import exact_number, fold_name
+from exactfold.app.shell.parsers import exact_number, fold_name
 from exactfold.errors import BadDriveError, NumberError, UsageError
 from exactfold.exact.numbers import approx_number
 from exactfold.motion.curves.stops import Stops

@@ -21,13 +21,11 @@ from exactfold.app.shell.parameters import (
     RollDirection,
     RollPatch,
     Side,
-    exact_number,
     flag,
-    fold_name,
     number,
-    one_of,
     written,
 )
+from exactfold.app.shell.parsers import exact_number, fold_name, one_of
 from exactfold.app.shell.shell import apart
 from exactfold.design.actuation.hinges import Hinges
 from exactfold.errors import UsageError

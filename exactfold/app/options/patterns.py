@@ -20,13 +20,11 @@ from exactfold.app.shell.parameters import (
     Periodic,
     Resume,
     complete_method,
-    direction_or_all,
-    distance,
     flag,
-    method_name,
     number,
     written,
 )
+from exactfold.app.shell.parsers import direction_or_all, distance, method_name
 from exactfold.branches.counting.registry import METHODS
 from exactfold.errors import UsageError
 

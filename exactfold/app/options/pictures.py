@@ -9,17 +9,16 @@ import typer
 from exactfold.app.options.reading import ReadingOptions
 from exactfold.app.options.ways import ONE_OF, WayOptions
 from exactfold.app.shell.parameters import (
-    ALL,
     BoundaryHeights,
     DrawnCells,
     RollDirection,
     RollPatch,
     Side,
-    duration,
     flag,
     number,
     written,
 )
+from exactfold.app.shell.parsers import ALL, duration
 from exactfold.errors import UsageError
 
 

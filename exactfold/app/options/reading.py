@@ -6,17 +6,8 @@ from typing import Annotated, ClassVar
 
 import typer
 
-from exactfold.app.shell.parameters import (
-    Chords,
-    Colours,
-    Dashes,
-    Force,
-    Sheet,
-    Snap,
-    flag,
-    noise_level,
-    number,
-)
+from exactfold.app.shell.parameters import Chords, Colours, Dashes, Force, Sheet, Snap, flag, number
+from exactfold.app.shell.parsers import noise_level
 from exactfold.errors import UsageError
 from exactfold.pattern.reading import Reading
 

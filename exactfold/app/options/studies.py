@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from exactfold.app.shell.parameters import Dask, Json, flag, number, sizes, written
+from exactfold.app.shell.parameters import Dask, Json, flag, number, written
+from exactfold.app.shell.parsers import sizes
 from exactfold.errors import UsageError
 
 

@@ -11,7 +11,8 @@ import typer
 
 from exactfold._support.clock import LIMIT
 from exactfold.app.options.ways import WayOptions
-from exactfold.app.shell.parameters import Json, Limit, distance, flag, number, written
+from exactfold.app.shell.parameters import Json, Limit, flag, number, written
+from exactfold.app.shell.parsers import distance
 from exactfold.app.shell.shell import apart
 from exactfold.errors import UsageError
 

@@ -30,7 +30,8 @@ from exactfold.exact.numbers import decimal_above
 if TYPE_CHECKING:
     from exactfold.branches.counting.stream import StreamedCount
     from exactfold.branches.values.branch import Branch
-    from exactfold.branches.values.result import BranchCount, Lettered
+    from exactfold.branches.values.lettered import Lettered
+    from exactfold.branches.values.result import BranchCount
 
 METHODS = {
     "nappes": "Newton, one start per sign vector",

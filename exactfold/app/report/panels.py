@@ -142,7 +142,7 @@ def _each(result: Decomposition) -> str:
 
 def known_lines(result: Decomposition) -> list[str]:
     """What is proved where not all motions are known: degrees of freedom, and the drawn letters."""
-    from exactfold.panels.result import product
+    from exactfold.panels.counts import product
 
     lines = []
     if result.graphs is not None:

@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Final, NamedTuple, NotRequired, TypeAlias, TypedDict
+from typing import TYPE_CHECKING, Annotated, Final, NotRequired, TypeAlias, TypedDict
 
 from exactfold._support.documents import Keywords, Natural, NotNegative, Positive, Sign, VerdictText
-from exactfold._support.plurals import counted
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report.motion import ending_text, event_text
 from exactfold.app.viewer.coding import CodedFrames, coded_frames, levelled
 from exactfold.app.viewer.families import Representative
+from exactfold.app.viewer.known import Known, only_floats, proof_of, proof_of_panels
 from exactfold.branches.values.export import AMOUNT
 from exactfold.errors import ExactfoldError, WorkerDiedError
-from exactfold.exact.numbers import outward
 from exactfold.motion.following import follow
-from exactfold.motion.proving import prove
 from exactfold.panels.modes.extension import FOREST, LINEAR
 from exactfold.pattern.crease_pattern import CreasePattern
 from exactfold.pattern.opening import panels
@@ -25,7 +23,6 @@ from exactfold.pattern.opening import panels
 if TYPE_CHECKING:
     from exactfold.branches.values.branch import Branch
     from exactfold.motion.curves.in_motion import SheetInMotion
-    from exactfold.motion.curves.motion import Motion
     from exactfold.motion.panels.families import FamilyMotion
     from exactfold.motion.panels.listing import PanelWay
     from exactfold.motion.panels.motion import PanelMotion
@@ -128,7 +125,7 @@ class Following:
         if self.dimension > 1 and not self.proving:
             return _family_of(branch, self.dimension, self.frames)
         motion = follow(branch, frames=self.frames)
-        proof = _proof(motion) if self.proving else _in_floats(motion)
+        proof = proof_of(motion) if self.proving else only_floats(motion)
         found: Followed = {"motion": _drawn(motion, proof), "why": ""}
         if self.dimension > 1:
             found["family"] = _family(motion, self.dimension)
@@ -155,11 +152,11 @@ class FollowingPanels:
         try:
             if isinstance(way, Representative):
                 motion = follow_family(self.ways.pattern, way.densities, frames=self.frames)
-                drawn = _drawn(motion, _in_floats(motion))
+                drawn = _drawn(motion, only_floats(motion))
                 dimension = way.dimension or motion.dimension
             else:
                 motion = follow_panels(self.ways, way=way, frames=self.frames)
-                drawn = _drawn(motion, _proof_of_panels(motion, self.proving))
+                drawn = _drawn(motion, proof_of_panels(motion, self.proving))
                 dimension = len(motion.curves) + len(self.ways.free)
         except WorkerDiedError:
             raise
@@ -174,15 +171,7 @@ class FollowingPanels:
         }
 
 
-class _Known(NamedTuple):
-    """What is known of a motion: whether what is drawn is proved, whether it exists, in words."""
-
-    proved: bool
-    exists: bool
-    said: str
-
-
-def _drawn(motion: SheetInMotion, known: _Known) -> DrawnMotion:
+def _drawn(motion: SheetInMotion, known: Known) -> DrawnMotion:
     return {
         **coded_frames(levelled(motion.coords)),
         "duration": motion.duration,
@@ -209,7 +198,7 @@ def _family_of(branch: Branch, dimension: int, frames: int) -> Followed:
     }
     motion = follow_family(sheet, densities, frames=frames)
     family = _family(motion, dimension)
-    return {"motion": _drawn(motion, _in_floats(motion)), "why": "", "family": family}
+    return {"motion": _drawn(motion, only_floats(motion)), "why": "", "family": family}
 
 
 def _family(motion: SheetInMotion, dimension: int) -> Family:
@@ -229,65 +218,7 @@ def _family(motion: SheetInMotion, dimension: int) -> Family:
 
 def in_floats(motion: SheetInMotion) -> DrawnMotion:
     """A motion of which nothing is proved."""
-    return _drawn(motion, _in_floats(motion))
-
-
-def _in_floats(motion: SheetInMotion) -> _Known:
-    """What is known before any proof."""
-    return _Known(False, False, f"followed in floats; {_kept(motion)}")
-
-
-def _kept(motion: SheetInMotion) -> str:
-    return f"faces stay rigid, to {max(motion.length_error, 1e-16):.0e} of each length"
-
-
-def _proof(motion: Motion) -> _Known:
-    """What is proved of a motion along a branch."""
-    proof = prove(motion)
-    if proof.status is not PROVED:
-        return _Known(False, False, f"followed in floats; it could not be proved: {proof.reason}")
-    event = None if proof.contact is None else proof.contact.event
-    parts = [f"it exists, without a gap, in {counted(proof.tubes, 'tube')}"]
-    for text in filter(None, (proof.through_text, proof.end_text)):
-        parts[0] += f", {text}"
-    if proof.end_text and proof.clear_to_the_end:
-        parts.append("no two faces touch before it, nor at it")
-    if event is not None:
-        low, high = outward(*event.time)
-        parts.append(f"its first contact is between the times {low} and {high}")
-    return _Known(True, True, f"{'; '.join(parts)}; the frames are floats close to it")
-
-
-def _proof_of_panels(motion: PanelMotion, contacts: bool) -> _Known:
-    """What is proved of a motion of panels, and of its contact if asked (docs/motion.md, 18)."""
-    if motion.closes is PROVED:
-        said = (
-            "every vertex closes exactly at all fold angles"
-            if motion.curves
-            else "only folds from boundary to boundary turn, and they may turn by any angle"
-        )
-        touching = _proved_contact(motion) if contacts else "contacts were found in floats"
-        return _Known(True, True, f"{said}; {touching}")
-    if motion.exists is PROVED:
-        said = "it exists until a fold reaches 180 degrees, and all angles grow"
-        if contacts:
-            said = f"{said}; {_proved_contact(motion)}; the drawing is computed in"
-        else:
-            said = f"{said}; the drawing and the contacts are computed in"
-        return _Known(False, True, f"{said} floats; {_kept(motion)}")
-    return _in_floats(motion)
-
-
-def _proved_contact(motion: PanelMotion) -> str:
-    from exactfold.motion.panels.clearance import prove_contacts
-
-    clearance = prove_contacts(motion)
-    if clearance.status is not PROVED:
-        return f"its contacts are undecided: {clearance.reason}"
-    if clearance.event is None:
-        return "it is proved that no panels touch on the way"
-    low, high = outward(*clearance.event.time)
-    return f"its first contact is proved to be between the times {low} and {high}"
+    return _drawn(motion, only_floats(motion))
 
 
 def not_followed(why: str) -> Followed:

@@ -14,7 +14,7 @@ from exactfold._support.plurals import counted
 from exactfold._support.results import Certified, Ways
 from exactfold._support.verdict import PROVED, UNDECIDED, Verdict
 from exactfold.branches.values.branch import Branch
-from exactfold.branches.values.letters import UPSIDE_DOWN, differing
+from exactfold.branches.values.lettered import Lettered, lettered
 from exactfold.errors import UsageError
 from exactfold.pattern.crease_pattern import CreasePattern, Edge
 from exactfold.pattern.described import described
@@ -28,8 +28,6 @@ if TYPE_CHECKING:  # counting branches does not load what panels need
     from exactfold.branches.values.count_document import (
         BranchCountDocument,
         BranchCountKeys,
-        LetteredDocument,
-        LetteredWay,
         Power,
     )
     from exactfold.branches.values.nearly_flat import Bends, NearlyFlat
@@ -57,25 +55,6 @@ class Proof:
     chart: Chart | None = None
     algebraic: AlgebraicProof | None = None
     lines: tuple[str, ...] = field(default=(), repr=False)
-
-
-@dataclass(frozen=True)
-class Lettered:
-    """The listed branches that have the letters of a file.
-
-    `ways` are pairs of the place in the list, beginning with 1, and the side: 1 with the letters of
-    the branch, -1 with all of them reversed. `status` is PROVED if there are no others. `unclear`
-    are those that agree as far as is known but have an unknown letter.
-    """
-
-    status: Verdict
-    ways: tuple[tuple[int, int], ...]
-    unclear: tuple[tuple[int, int], ...] = ()
-
-    def to_dict(self) -> LetteredDocument:
-        """The key `letters` of `exactfold count --json`."""
-        ways: list[LetteredWay] = [{"way": way, "side": side} for way, side in self.ways]
-        return {"status": str(self.status), "ways": ways}
 
 
 @dataclass(frozen=True, repr=False)
@@ -227,16 +206,7 @@ class BranchCount(Page, Ways[Branch], Certified):
         """Which branches have `letters`; None if there are no letters or no branch is listed."""
         if not self.letters or not self.branches:
             return None
-        turned = {fold: x.translate(UPSIDE_DOWN) for fold, x in self.letters.items()}
-        ways: list[tuple[int, int]] = []
-        unclear: list[tuple[int, int]] = []
-        for k, branch in enumerate(self.branches, 1):
-            for side, wanted in ((1, self.letters), (-1, turned)):
-                other, unknown = differing(wanted, branch.assignment)
-                if not other:
-                    (unclear if unknown else ways).append((k, side))
-        proved = self.status is PROVED and not unclear
-        return Lettered(PROVED if proved else UNDECIDED, tuple(ways), tuple(unclear))
+        return lettered(self.branches, self.letters, self.status is PROVED)
 
     def to_dict(
         self, certificate: str | None = None, name: str | None = None
@@ -318,7 +288,7 @@ class BranchCount(Page, Ways[Branch], Certified):
 
     def of_digits(self) -> AsWrittenDocument:
         """The key `as_written` of the answer for the sheet that was meant."""
-        from exactfold.panels.result import digits  # imported here: a count does not need it
+        from exactfold.pattern.opened import digits  # imported here: a count does not need it
 
         return {
             "sheet": digits(self.meant, self.read),

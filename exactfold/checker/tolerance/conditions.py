@@ -10,6 +10,7 @@ from ..core.limits import TOLERANCE_UNKNOWNS
 from ..core.reading import at_most, require
 from ..core.towers import Number
 from ..sheets.panels import PanelSheet
+from ..sheets.scaled import scaled
 
 S = 48
 """Binary places of coordinates, gradients, N and Y."""
@@ -48,16 +49,8 @@ class Conditions:
             ]
             for ring in self.rings
         ]
-        x, y = sheet.points[sheet.panels[0][0]]
-        moved = [(a - x, b - y) for a, b in sheet.points]
-        bits, most = 32, 0
-        while most < 1 << 16:  # until the largest coordinate is known to some digits
-            bits += bits
-            ends = [c.enclosed(bits) for point in moved for c in point]
-            most = max(max(abs(c.low), abs(c.high)) for c in ends)
-        self.scale = Fraction(1 << bits, 1 << most.bit_length())
-        factor = sheet.tower.number(self.scale)
-        self.points = [[rounded(c * factor, S) for c in point] for point in moved]
+        self.scale, points = scaled(sheet)
+        self.points = [[rounded(c, S) for c in point] for point in points]
         self.off = 2 << P - S
 
     def direction(self, i: int, j: int) -> Row:

@@ -16,9 +16,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from itertools import combinations
+from itertools import pairwise
 from math import atan, pi
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -28,6 +28,7 @@ from exactfold.errors import StuckPlatesError, UsageError
 from exactfold.exact.numbers import decimal_above, format_rational
 from exactfold.exact.surds import Number, ball, sign
 from exactfold.motion.curves.motion_document import PlatesDocument
+from exactfold.motion.solid.ears import Spot, ears, may_cross, turned
 from exactfold.panels.vertex.stars import dot
 from exactfold.pattern.panel_pattern import Edge, PanelPattern, Point
 
@@ -38,7 +39,6 @@ HINGES: Final = (MIDDLE, VALLEY)
 BITS: Final = 128
 NEAR: Final = 1 - Fraction(1, 1 << 40)
 """Plates are proved to be farther from a fold than this part of the trim."""
-Spot: TypeAlias = tuple[arb, arb]
 
 
 @dataclass(frozen=True)
@@ -186,31 +186,19 @@ class Plates:
             return tuple(self._cut(panel) for panel in range(len(self.pattern.faces)))
 
     def _cut(self, panel: int) -> tuple[tuple[int, int, int], ...]:
-        """Ears of the outline, one after the other; refuses an outline that is not simple."""
+        """The triangles of one plate; refuses an outline that is not simple."""
         spots, face = self._spots(panel), self.pattern.faces[panel]
-        count = len(spots)
-        sides = [(k, (k + 1) % count) for k in range(count)]
         outline = self.outlines[panel]
-        for i, j in sides:
+        for i, j in pairwise([*range(len(spots)), 0]):
             (v, _), (w, _) = outline[i], outline[j]
             if v != w and not _along(self.pattern, (v, w), spots[i], spots[j]):
                 raise self._gone(panel, f"its side {v}-{w} is used up")
-        for (a, b), (c, d) in combinations(sides, 2):
-            if {a, b} & {c, d}:
-                continue
-            p, q, r, s = spots[a], spots[b], spots[c], spots[d]
-            if not (_one_side(p, q, r, s) or _one_side(r, s, p, q)):
-                raise self._gone(panel, "its sides cross")
-        ring, triangles = list(range(count)), []
-        while len(ring) > 3:
-            k = next((k for k in range(len(ring)) if _is_ear(spots, ring, k)), None)
-            if k is None:
-                raise self._gone(panel, "its sides cross")
-            triangles.append((ring[k - 1], ring[k], ring[(k + 1) % len(ring)]))
-            del ring[k]
-        if not _turn(spots, *ring) > 0:
+        triangles = None if may_cross(spots) else ears(spots)
+        if triangles is None:
+            raise self._gone(panel, "its sides cross")
+        if not turned(*(spots[k] for k in triangles[-1])) > 0:
             raise self._gone(panel, f"its side {face[0]}-{face[1]} is used up")
-        return (*triangles, (ring[0], ring[1], ring[2]))
+        return triangles
 
     def _gone(self, panel: int, why: str) -> StuckPlatesError:
         name = "-".join(map(str, self.pattern.faces[panel]))
@@ -408,25 +396,3 @@ def _along(pattern: PanelPattern, edge: Edge, p: Spot, q: Spot) -> bool:
     """Whether the way from one corner to the next has the direction of an edge, for certain."""
     x, y = (ball(c, BITS) for c in pattern.direction(*edge))
     return bool((q[0] - p[0]) * x + (q[1] - p[1]) * y > 0)
-
-
-def _turned(p: Spot, q: Spot, r: Spot) -> arb:
-    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
-
-
-def _one_side(p: Spot, q: Spot, r: Spot, s: Spot) -> bool:
-    """Whether two points are on one side of a line, for certain."""
-    return bool(_turned(p, q, r) * _turned(p, q, s) > 0)
-
-
-def _turn(spots: Sequence[Spot], i: int, j: int, k: int) -> arb:
-    return _turned(spots[i], spots[j], spots[k])
-
-
-def _is_ear(spots: Sequence[Spot], ring: Sequence[int], k: int) -> bool:
-    a, b, c = ring[k - 1], ring[k], ring[(k + 1) % len(ring)]
-    if not _turn(spots, a, b, c) > 0:
-        return False
-    sides = ((a, b), (b, c), (c, a))
-    others = (v for v in ring if v not in (a, b, c))
-    return all(any(_turn(spots, i, j, v) < 0 for i, j in sides) for v in others)

@@ -80,6 +80,9 @@ def directions_at(framework: Framework, patch: FlatPatch, near: FloatArray) -> l
     parts = framework.along(kernel)
     forms = np.einsum("ve,aex,bex->vab", w, parts, parts)
     forms /= np.abs(forms).max(axis=(1, 2), keepdims=True)
+    spread = _spread(forms)
+    forms, kernel = np.einsum("ac,vab,bd->vcd", spread, forms, spread), spread.T @ kernel
+    forms /= np.abs(forms).max(axis=(1, 2), keepdims=True)
     directions: list[FloatArray] = []
     random = np.random.default_rng(0)
     for _ in range(_STARTS << number):
@@ -100,3 +103,19 @@ def directions_at(framework: Framework, patch: FlatPatch, near: FloatArray) -> l
         if len(directions) == 1 << number:
             break
     return [c @ kernel for c in directions]
+
+
+def _spread(forms: FloatArray) -> FloatArray:
+    """Coordinates in which common zeros of quadratic forms are not close to each other.
+
+    Where the sheet hardly folds at the flat vertices on its way, all zeros are close to the vector
+    for which the forms have the least gradients. The others are made shorter, so that the forms
+    have coefficients of the same size in all coordinates.
+    """
+    _, vectors = np.linalg.eigh(np.einsum("vab,vbc->ac", forms, forms))
+    turned = np.abs(np.einsum("ac,vab,bd->vcd", vectors, forms, vectors))
+    one, mixed, others = (x.max() for x in (turned[:, 0, 0], turned[:, 0, 1:], turned[:, 1:, 1:]))
+    scale = np.ones(len(vectors))
+    if others:
+        scale[1:] = min(1.0, max(mixed / others, (one / others) ** 0.5))
+    return np.asarray(vectors * scale)

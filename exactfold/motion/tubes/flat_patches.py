@@ -18,6 +18,8 @@ from exactfold.motion.tubes.length_equations import Row
 from exactfold.motion.tubes.piece import Ball
 
 _MATRIX_BITS = 40
+_NEWTON, _CLOSE = 12, 40
+"""The most steps of Newton's method. After a step shorter than 2^-_CLOSE the matrix is kept."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -142,18 +144,18 @@ class FlatPatch:
         bits = max(bits, framework.bits)
         start = np.rint(near[list(self.places)] * 2.0**60)
         z = np.array([int(x) << (bits - 60) for x in start], dtype=object).reshape(-1, 3)
-        jacobian = self._jacobian(z, bits)
-        try:
-            floats = np.array([[x / (1 << _MATRIX_BITS) for x in row] for row in jacobian])
-            inverse = np.linalg.inv(floats)
-        except np.linalg.LinAlgError:
-            return None
-        if not np.abs(inverse).max() < 2.0**40:
-            return None
-        p = _whole(inverse, _MATRIX_BITS)
-        for _ in range(4):
-            step = p @ self._stretch(z, bits)
-            z = z - (step >> (_MATRIX_BITS + bits + 1)).reshape(-1, 3)
+        p, close = None, False
+        for _ in range(_NEWTON):
+            if not close:  # near the solution, the same matrix will do
+                p = self._inverse(z, bits)
+            if p is None:
+                return None
+            step = (p @ self._stretch(z, bits)) >> (_MATRIX_BITS + bits + 1)
+            z = z - step.reshape(-1, 3)
+            largest = int(max(abs(step)))
+            if largest <= 1:
+                break
+            close = largest << _CLOSE < 1 << bits
         # The rounding error of each residual is less than one unit.
         residual = int(max(abs(p @ self._stretch(z, bits)) + abs(p).sum(axis=1)))
         jacobian = self._jacobian(z, bits)
@@ -179,6 +181,16 @@ class FlatPatch:
                 radii.append(-(-reach // self._denominator) + 1)
         ball = Ball(bits, tuple(centre), tuple(radii))
         return FlatPoint(self, ball, tuple(int(x) for x in z.reshape(-1)), proof.uniqueness(ONE))
+
+    def _inverse(self, z: BigArray, bits: int) -> BigArray | None:
+        """An approximate inverse of the Jacobian, over 2^_MATRIX_BITS; None if it is singular."""
+        jacobian = self._jacobian(z, bits)
+        try:
+            floats = np.array([[x / (1 << _MATRIX_BITS) for x in row] for row in jacobian])
+            inverse = np.linalg.inv(floats)
+        except np.linalg.LinAlgError:
+            return None
+        return _whole(inverse, _MATRIX_BITS) if np.abs(inverse).max() < 2.0**40 else None
 
     @cached_property
     def places(self) -> tuple[int, ...]:

@@ -13,6 +13,7 @@ from exactfold.certificates.entries import Document
 from exactfold.motion.claims import Claim
 from exactfold.motion.curves.crossing_curves import crossing_ahead, flat_vertices
 from exactfold.motion.tubes.arclength import Interval
+from exactfold.motion.tubes.branch_point_stresses import directions_at
 from exactfold.motion.tubes.branch_point_tube import (
     ROW_BITS,
     BranchPointTube,
@@ -143,8 +144,36 @@ def passage_ahead(
         crossing = crossing_ahead(link.tube.framework, point.floats[0], velocity.floats[0])
         if crossing is not None:
             return _passage_at(labels, steps, *crossing)
+        nearby = _passage_nearby(labels, steps, point.floats[0], velocity.floats[0])
+        if nearby is not None:
+            return nearby
         if early:
             break
+    return None
+
+
+def _passage_nearby(
+    labels: Sequence[int],
+    steps: Sequence[Link | Passage],
+    point: FloatArray,
+    velocity: FloatArray,
+) -> tuple[int, Passage] | None:
+    """The passage of the branch point at which the stars that are nearly flat at `point` are flat.
+
+    Where these stars hardly fold on the way there, the curves through the branch point are so near
+    to each other that floats do not follow any of them to their crossing.
+    """
+    framework = steps[-1].tube.framework
+    patch = FlatPatch.of(framework, flat_vertices(framework, point))
+    flat_point = None if patch is None else patch.point(point, steps[-1].tube.bits)
+    if patch is None or flat_point is None:
+        return None
+    near = flat_point.ball.floats[0]
+    directions = [d if d @ velocity > 0 else -d for d in directions_at(framework, patch, near)]
+    for direction in sorted(directions, key=lambda d: -float(d @ velocity)):
+        passage = _passage_at(labels, steps, near, direction)
+        if passage is not None:
+            return passage
     return None
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping, Sequence
 from heapq import heappop, heappush
 from typing import Final
 
@@ -14,6 +12,7 @@ from exactfold._support.clock import UNLIMITED, Clock
 from exactfold.errors import TooManyModesError
 from exactfold.exact.surds import Surd, SurdField, common_field, sign
 from exactfold.panels.spaces.kernel import Entry, Rows, entry, first_order
+from exactfold.panels.spaces.parameters import Space, is_kept, leaf_of, on_folds
 from exactfold.panels.spaces.quadratics import MOST_ROOTS
 from exactfold.panels.spaces.sparse import (
     Form,
@@ -33,7 +32,6 @@ from exactfold.panels.spaces.subspaces import (
     LimitedSearch,
     direct_sum,
     independent_parts,
-    made_leaf,
     maximal,
 )
 from exactfold.panels.spaces.together import independent, narrowing_sum, vanish_only_at_zero
@@ -41,35 +39,6 @@ from exactfold.panels.vertex.stars import Star
 from exactfold.pattern.panel_pattern import Edge
 
 _FIRST_TURN: Final = 100_000
-
-
-@dataclass(frozen=True)
-class _Space:
-    """The densities as functions of parameters, each of which is the density of one fold.
-
-    `forms` has those forms of vertices that are known on this space. `users` has the folds whose
-    density depends on each parameter; they are found when they are first asked for.
-    """
-
-    rows: Mapping[Edge, Row]
-    forms: Mapping[int, Form]
-    found: Mapping[int, frozenset[Edge]] | None = None
-    changed: frozenset[int] = frozenset()
-    """The vertices whose form may differ from that on the space from which this one was made."""
-
-    @cached_property
-    def users(self) -> Mapping[int, frozenset[Edge]]:
-        if self.found is not None:
-            return self.found
-        users: dict[int, list[Edge]] = {}
-        for edge, row in self.rows.items():
-            for k in row:
-                users.setdefault(k, []).append(edge)
-        return {k: frozenset(edges) for k, edges in users.items()}
-
-    @property
-    def parameters(self) -> list[int]:
-        return sorted({k for row in self.rows.values() for k in row})
 
 
 def leaves(
@@ -110,12 +79,12 @@ class Splitting(LimitedSearch):
         """
         total: list[Leaf] = [Leaf({}, 0, ())]
         for part, part_size in independent_parts(rows, size, self.stars):
-            whole = _Space(_on_folds(part, part_size), {})
+            whole = Space(on_folds(part, part_size), {})
             found = maximal(self._in_turns(whole), self.clock)
             total = [direct_sum(a, b) for a in total for b in found]
         return [leaf for leaf in total if leaf.size]
 
-    def _in_turns(self, space: _Space) -> list[Leaf]:
+    def _in_turns(self, space: Space) -> list[Leaf]:
         work, sums = self.work, self.sums
         for most in (min(work + _FIRST_TURN, self.most), self.most):
             for self._avoids_roots in (False, True):
@@ -127,7 +96,7 @@ class Splitting(LimitedSearch):
                     error = caught
         raise error
 
-    def _solved(self, space: _Space, settled: frozenset[int]) -> list[Leaf]:
+    def _solved(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of one space: the product of the leaves of its independent parts.
 
         The forms of `settled` vertices are known to vanish on the space.
@@ -142,7 +111,7 @@ class Splitting(LimitedSearch):
             self.count(len(total))
         return total
 
-    def _split(self, space: _Space, settled: frozenset[int]) -> list[Leaf]:
+    def _split(self, space: Space, settled: frozenset[int]) -> list[Leaf]:
         """The leaves of a part, without some that lie in leaves found before.
 
         The form of the chosen vertex has two linear factors. First the space on which one of them
@@ -164,7 +133,7 @@ class Splitting(LimitedSearch):
             if total is None:
                 if vanish_only_at_zero(space.forms, left, len(space.parameters)):
                     return [] if any(map(is_kept, space.rows)) else [Leaf({}, 0, ())]
-                return [_leaf(space, independent(space.forms, left, self.clock))]
+                return [leaf_of(space, independent(space.forms, left, self.clock))]
             if len({sign(d) for d, _ in total}) == 1:
                 self.sums = True
                 smaller = self._imposed(space, [row for _, row in total])
@@ -176,13 +145,13 @@ class Splitting(LimitedSearch):
             solutions += self._solved(child, now)
         self._kept += 1
         rows = {**space.rows, (v, -self._kept): one}
-        child = self._imposed(_Space(rows, space.forms), [other])
+        child = self._imposed(Space(rows, space.forms), [other])
         if child is not None:
             solutions += self._solved(child, now)
         return solutions
 
     def _chosen(
-        self, space: _Space, settled: frozenset[int], products: Sequence[int]
+        self, space: Space, settled: frozenset[int], products: Sequence[int]
     ) -> tuple[int, Row, Row]:
         """The vertex whose form is split next, and the factors of its form.
 
@@ -212,7 +181,7 @@ class Splitting(LimitedSearch):
         v = next(plain_roots, among[0])
         return v, *self._factors(space.forms[v], field)
 
-    def _field_of(self, space: _Space) -> SurdField:
+    def _field_of(self, space: Space) -> SurdField:
         field = common_field(x for row in space.rows.values() for x in row.values())
         return self._field if field.dimension < self._field.dimension else field
 
@@ -232,8 +201,8 @@ class Splitting(LimitedSearch):
         return known[2]
 
     def _reduced(
-        self, space: _Space, settled: frozenset[int]
-    ) -> tuple[_Space, frozenset[int], list[int], list[int]] | None:
+        self, space: Space, settled: frozenset[int]
+    ) -> tuple[Space, frozenset[int], list[int], list[int]] | None:
         """The space after all semidefinite forms; the vertices whose forms vanish on it, split, or
         remain. None if a kept factor vanishes.
         """
@@ -270,9 +239,9 @@ class Splitting(LimitedSearch):
         whole = {
             u: self._form(u, space.rows) if form is None else form for u, form in forms.items()
         }
-        return _Space(space.rows, whole, space.users), frozenset(known), products, left
+        return Space(space.rows, whole, space.users), frozenset(known), products, left
 
-    def _imposed(self, space: _Space, functionals: Sequence[Row]) -> _Space | None:
+    def _imposed(self, space: Space, functionals: Sequence[Row]) -> Space | None:
         """The subspace on which linear functions vanish; None if a kept row vanishes on it."""
         rows, users = dict(space.rows), dict(space.users)
         changed: set[Edge] = set()
@@ -300,7 +269,7 @@ class Splitting(LimitedSearch):
             waiting = [without(f, pivot, solved) if pivot in f else f for f in waiting]
         touched = {v for edge in changed for v in self._touched(edge)}
         forms = {v: form for v, form in space.forms.items() if v not in touched}
-        return _Space(rows, forms, users, frozenset(touched))
+        return Space(rows, forms, users, frozenset(touched))
 
     def _rows_at(self, v: int, rows: Mapping[Edge, Row]) -> list[Row]:
         """The densities of the folds that determine those of a vertex."""
@@ -332,7 +301,7 @@ class Splitting(LimitedSearch):
         """The stars to which a row belongs; a kept factor is one of the form of a vertex."""
         return (edge[0],) if is_kept(edge) else self.at[edge]
 
-    def _parts(self, space: _Space) -> list[_Space]:
+    def _parts(self, space: Space) -> list[Space]:
         """The space as a direct sum over the parts of the sheet that active folds connect.
 
         Every parameter is the density of a fold. Where every condition that was imposed belongs
@@ -362,30 +331,8 @@ class Splitting(LimitedSearch):
         for part in parts.values():
             near = {v for edge in part for v in self._touched(edge)}
             forms = {v: form for v, form in space.forms.items() if v in near}
-            together.append(_Space(part, forms))
+            together.append(Space(part, forms))
         return together
-
-
-def is_kept(edge: Edge) -> bool:
-    """Whether the row of this key is a factor that must not vanish; folds join two vertices."""
-    return edge[1] < 0
-
-
-def _on_folds(rows: Rows, size: int) -> dict[Edge, Row]:
-    """The rows of a space as sparse ones, whose parameters are densities of folds."""
-    sparse = {edge: {k: plain(x) for k, x in enumerate(row) if x} for edge, row in rows.items()}
-    owned = {min(row) for row in sparse.values() if len(row) == 1 and row[min(row)] == 1}
-    if len(owned) == size:
-        return sparse
-    return dict(zip(sparse, row_space(list(sparse.values()))[1], strict=True))
-
-
-def _leaf(space: _Space, left: Iterable[int]) -> Leaf:
-    names = space.parameters
-    zero = fmpq(0)
-    folds = ((edge, row) for edge, row in space.rows.items() if not is_kept(edge))
-    rows: Rows = {edge: [row.get(k, zero) for k in names] for edge, row in folds}
-    return made_leaf(rows, len(names), left)
 
 
 def _local(

@@ -206,7 +206,8 @@ class FloatSheet:
         p = self._pattern
         if self.n > _DISSECTED:
             upper = p.rows < p.columns
-            order = nested_dissection(self.places, np.stack([p.rows[upper], p.columns[upper]], 1))
+            ends = np.stack([p.rows[upper], p.columns[upper]], axis=1)
+            order = nested_dissection(self.places, ends, self._border)
             place = np.empty_like(order)
             place[order] = np.arange(self.n)
         else:
@@ -214,6 +215,16 @@ class FloatSheet:
             place = _factors(data, p.rows, p.pointers, "MMD_AT_PLUS_A").perm_c
             order = np.argsort(place)
         return order, _Columns.of(place[p.rows], place[p.columns], self.n)
+
+    @cached_property
+    def _border(self) -> BoolArray:
+        """The unknowns that have a neighbour with a given height."""
+        inside = np.zeros(len(self.boundary_heights), dtype=bool)
+        inside[self.unknowns] = True
+        ends = self.corners[:, :2]
+        beside = np.zeros_like(inside)
+        beside[ends[~inside[ends].all(axis=1)]] = True
+        return np.asarray(beside[self.unknowns])
 
     def part(self, chosen: IndexArray, x: FloatArray) -> FloatSheet:
         """The equations of the chosen unknowns alone; all other heights are as in `x`.

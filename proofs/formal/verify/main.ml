@@ -4,9 +4,10 @@ open Reading
 open Sheets
 module V = Verified
 
-let usage = "usage: exactfold-verify FILE\n\n\
-  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a triangulated\n\
+let usage = "usage: exactfold-verify FILE [DRAWING.fold]\n\n\
+  Verifies a certificate of all branches or of one branch (version 1) of a triangulated\n\
   sheet that is convex, or has four corners of which one is reflex, and says what of the file it does not verify.\n\
+  With a drawing, it also compares the vertices and faces of the sheet with those written there.\n\
   Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
   70 a defect, or memory is short.\n"
 
@@ -162,10 +163,12 @@ let all_branches header blocks claims =
   Option.iter (fun r -> raised r;
     print_string "          The chart of the file names this side, by theorem chart_verified.\n") corner;
   stay_flat t;
-  meaning t;
+  let continue = meaning_of t in
+  if continue then print_string "          Near the flat sheet each branch continues to one true motion, and there are no others:\n\
+    \          by theorem all_continue.\n";
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
   if t.parts <> [] then not_verified "the multiplicity of each branch";
-  not_verified "that every branch continues to a true motion"
+  if not continue then not_verified "that every branch continues to a true motion"
 
 (* --- files --- *)
 
@@ -203,16 +206,19 @@ let verify path =
     | format, version -> other format version ""
   end
 
-let () =
+let main path =
   let fail code format = Printf.ksprintf (fun why ->
     Printf.eprintf "exactfold-verify: %s: %s\n" Sys.argv.(1) why; exit code) format in
-  match Sys.argv with
-  | [| _; ("-h" | "--help") |] -> print_string usage
-  | [| _; path |] -> (try verify path; flush stdout with
+  try verify path; flush stdout with
     | Invalid why -> Printf.printf "INVALID   %s\n" why; exit 1
     | Unverified why -> Printf.printf "NOT VERIFIED  %s\n" why; exit 1
     | Refused why -> fail 3 "%s" why
     | Stack_overflow -> fail 70 "the stack is too small for this file: run `ulimit -s unlimited` first"
     | Sys_error why -> fail 3 "%s" why
-    | error -> fail 70 "nothing is known of this file: %s" (Printexc.to_string error))
+    | error -> fail 70 "nothing is known of this file: %s" (Printexc.to_string error)
+
+let () = match Sys.argv with
+  | [| _; ("-h" | "--help") |] -> print_string usage
+  | [| _; path |] -> main path
+  | [| _; path; drawing |] -> Drawing.wanted := Some drawing; main path
   | _ -> prerr_string usage; exit 2

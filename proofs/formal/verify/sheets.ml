@@ -47,7 +47,8 @@ let place_of file triangles =
 let shown_sheet t =
   Printf.printf "sheet     %s, %d inside and %d on the boundary, %s, %s\ndigest    %s\n%!"
     (plural (Array.length t.file.points) "vertex") (Array.length t.inside + List.length t.hidden) t.rim
-    (plural (List.length t.file.triangles) "triangle") (plural (Array.length (folds t.file)) "fold") t.file.digest
+    (plural (List.length t.file.triangles) "triangle") (plural (Array.length (folds t.file)) "fold") t.file.digest;
+  Drawing.compare_with t.file
 
 let check_sheet t =
   let opened = if t.corner = None then t.d.triangles else List.tl t.d.triangles in
@@ -61,18 +62,22 @@ let stay_flat t = if t.parts <> [] then
     (plural (List.length t.parts) "triangle") (plural (List.length t.hidden) "vertex")
     (if List.length t.parts = 1 then "stays" else "stay")
 
-(* Whether the equations of the file are proved to be those of a motion; of many faces this takes long. *)
-let meaning t =
+(* Whether the equations of the file are proved to be those of a motion; of many faces this takes long. The answer is
+   whether, moreover, the disk is the sheet in which branches are verified, with all its faces. *)
+let meaning_of t =
   let faces = List.map (fun (a, b, c) -> ((a, b), c)) t.file.triangles in
-  let disk () =
-    let none = Array.make (Array.length t.file.points) false in
-    let whole = Proposing.drawing (fst (Proposing.closed t.file none)) none in
+  let none = Array.make (Array.length t.file.points) false in
+  let whole () = Proposing.drawing (fst (Proposing.closed t.file none)) none in
+  let disk (whole : V.drawing) =
     let inside = List.filter (fun v -> t.corner <> Some v) whole.inside in
     V.moves_as_a_disk whole inside faces (Proposing.gluing { whole with inside; triangles = faces }) in
-  if List.length faces <= 1000 && disk () then
+  if List.length faces <= 1000 && disk (whole ()) then begin
     print_string "          Heights solve the equations if and only if they begin a motion that keeps all\n\
-      \          lengths to second order, by theorem disk_moves.\n"
-  else not_verified "that the equations are those of motions to second order"
+      \          lengths to second order, by theorem disk_moves.\n";
+    t.d = whole () && t.d.triangles = faces
+  end else (not_verified "that the equations are those of motions to second order"; false)
+
+let meaning t = ignore (meaning_of t)
 
 let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
   \          closes the notch.\n" r

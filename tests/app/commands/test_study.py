@@ -15,7 +15,7 @@ import pytest
 from running import BAD_INPUT, INVALID, PROVED, USAGE, error_class, run
 from test_schemas import valid
 
-from exactfold.app.shell.parameters import sizes
+from exactfold.app.shell.parsers import sizes
 from exactfold.app.shell.row_numbers import read_numbers, written_numbers, written_sizes
 from exactfold.studies import StudyTable, all_studies, table1
 from exactfold.studies.running.registry import MODULES

@@ -17,14 +17,21 @@ from sixty_digits import assert_holds_the_node
 from exactfold import checker, random_square, schema
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.report import motion_report
-from exactfold.app.viewer import ways
+from exactfold.app.viewer import known
 from exactfold.branches import find_branch
 from exactfold.exact.surds import float_bounds
 from exactfold.motion import certificate_with_contact, follow, follow_proved, prove, proving
 from exactfold.motion.contacts import contacts
 from exactfold.motion.contacts.contacts import first_contact
 from exactfold.motion.contacts.separation import Open
-from exactfold.motion.tubes import chain
+from exactfold.motion.curves.crossing_curves import crossing_ahead
+from exactfold.motion.loops.loops import LoopFinder
+from exactfold.motion.loops.rays import Ray
+from exactfold.motion.tubes import chain, passages
+from exactfold.motion.tubes.passages import Passage
+from exactfold.motion.tubes.tube import sharpened
+from exactfold.motion.tubes.visits import LocatedBranchPoint
+from exactfold.rigidity.equations.problem import Problem
 
 SHEET = random_square(5, seed=4)
 SIGNS, FLAT = "-+--+", 6
@@ -219,13 +226,13 @@ def shown(proof):
 def test_what_is_said_of_a_node(proof, monkeypatch):
     told = f"{proof.end_text}; no two faces touch before it, nor at it"
     assert f"one curve without a gap, 4 tubes, {told}" in shown(proof)
-    monkeypatch.setattr(ways, "prove", lambda motion: proof)
-    assert told in ways._proof(proof.motion).said
+    monkeypatch.setattr(known, "prove", lambda motion: proof)
+    assert told in known.proof_of(proof.motion).said
     # Where faces may touch before it, it is not said that they do not.
     passed = replace(proof, passed=True)
     assert "no two faces touch before 0.50068592, then some may" in shown(passed)
-    monkeypatch.setattr(ways, "prove", lambda motion: passed)
-    assert "touch" not in ways._proof(proof.motion).said
+    monkeypatch.setattr(known, "prove", lambda motion: passed)
+    assert "touch" not in known.proof_of(proof.motion).said
     for one in (proof, passed):
         jsonschema.validate({**one.motion.to_dict(), "proof": one.to_dict()}, schema("motion"))
 
@@ -244,6 +251,34 @@ def test_a_node_with_two_flat_vertices_after_a_contact():
     assert_holds_the_node(
         proof.branch_point.tube.patch, proof.track.frame(float_bounds(proof.length[1])[0]).ball
     )
+
+
+HARDLY = "+++++-++++-+", "++-+++-++++-"
+"""Rays of `random_square(12, seed=7000)`: on the way to a branch point, no fold at its flat
+vertices is steeper than 0.001 radians. On the second one it is far from where it seems to be."""
+
+
+@pytest.mark.parametrize("signs", HARDLY)
+def test_a_node_at_which_four_nearly_equal_curves_meet(signs, monkeypatch, tmp_path):
+    """Floats do not follow any of them to the branch point."""
+    branch = find_branch(random_square(12, seed=7000), signs)
+    source = Ray(tuple(branch.vertex_signs.values()), 1)
+    loop = LoopFinder(Problem.of(branch.pattern)).follow_from(branch, source)
+    assert loop.loop.status is PROVED
+    (passage,) = (step for step in loop.steps if isinstance(step, Passage))
+    assert passage.vertices == (5, 7)
+    before = loop.steps[: loop.steps.index(passage)]
+    link = before[-1]
+    point, along = sharpened(link.tube, link.exit).floats[0], link.tube.velocity(link.exit)
+    assert crossing_ahead(link.tube.framework, point, along.floats[0]) is None
+    with monkeypatch.context() as none:
+        none.setattr(passages, "_passage_nearby", lambda *_: None)
+        assert passages.passage_ahead(range(16), before) is None
+    assert_holds_the_node(passage.tube.patch, passage.tube.branch_point)
+    four = LocatedBranchPoint.of(passage.tube.framework, passage.visit(Fraction(1)))
+    assert four.has_all_lines
+    (tmp_path / "loop").write_text(loop.lines().text)
+    assert checker.verify(tmp_path / "loop")["loops"] == 1
 
 
 @pytest.mark.survey

@@ -13,7 +13,7 @@ from sampling import slow_after
 from exactfold._support.clock import Clock
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
 from exactfold.app.schemas import schema
-from exactfold.app.verbs.counting import counted_with_letters
+from exactfold.app.verbs.completing import counted_with_letters
 from exactfold.design.panels.vertex.vertices import vertices
 from exactfold.errors import FoldError, NotADiskError, PatternError
 from exactfold.panels.decomposition import decompose

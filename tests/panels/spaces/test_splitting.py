@@ -13,6 +13,7 @@ from exactfold._support.clock import Clock
 from exactfold.errors import TooManyModesError
 from exactfold.panels.spaces import splitting
 from exactfold.panels.spaces.kernel import first_order
+from exactfold.panels.spaces.parameters import Space, on_folds
 from exactfold.panels.spaces.quadratics import squares_of
 from exactfold.panels.spaces.sparse import (
     Form,
@@ -83,7 +84,7 @@ def test_the_second_order_is_tried_where_the_first_takes_too_much_work(
 def test_of_equally_near_vertices_one_without_a_new_root_is_split_first() -> None:
     moving = stars(tiling(2, 2))
     search = Splitting(moving, 10**7)
-    rows = splitting._on_folds(*first_order(moving))
+    rows = on_folds(*first_order(moving))
     forms = {v: search._form(v, rows) for v in moving}
 
     def chosen(plain: set[int], settled: frozenset[int]) -> int:
@@ -93,7 +94,7 @@ def test_of_equally_near_vertices_one_without_a_new_root_is_split_first() -> Non
             for v, ((_, one), (_, other)) in forms.items()
         }
         waiting = [v for v in forms if v not in settled]
-        return search._chosen(splitting._Space(rows, given), settled, waiting)[0]
+        return search._chosen(Space(rows, given), settled, waiting)[0]
 
     for v, star in moving.items():
         around = {u for edge in star.folds for u in edge}

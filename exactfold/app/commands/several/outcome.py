@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from exactfold._support.verdict import PROVED, UNDECIDED
 from exactfold.app.options.reading import overruling
 from exactfold.app.shell.shell import EXIT, error_document, exit_code
-from exactfold.app.verbs.counting import counted_with_letters
+from exactfold.app.verbs.completing import counted_with_letters
 from exactfold.branches.counting.batch import Job, count_job
 from exactfold.branches.values.result import BranchCount
 from exactfold.pattern.drawing.drawing import Loud

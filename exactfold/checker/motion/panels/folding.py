@@ -8,11 +8,12 @@ from typing import Any
 from ...core.limits import MOST_TESTS
 from ...core.reading import counted, natural, require
 from ...sheets.panels import PanelSheet
+from ...sheets.scaled import scaled
 from ..claims import Claim, Document
 from ..faces import FacePairs
 from .cut import Triangle, cut, from_least
 from .drive import DrivenModes
-from .places import Places, shrunk
+from .places import Places
 from .plates import Plates
 from .times import Clock, OneRate, Rates
 
@@ -28,7 +29,8 @@ class Folding:
     """
 
     def __init__(self, sheet: PanelSheet, claims: Document, evidence: Document) -> None:
-        scale, self.evidence = shrunk(sheet), evidence
+        self.evidence = evidence
+        scale, sheet.points = scaled(sheet)
         self.drive = DrivenModes(
             sheet, claims["assignment"], claims["drivers"], evidence["vertices"]
         )

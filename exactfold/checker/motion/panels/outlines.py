@@ -27,7 +27,7 @@ NEAR = 1 - Fraction(1, 1 << 30)
 class Solid:
     """The thickness of the plates of a file, where their hinges lie, and how far they are cut back.
 
-    All lengths are in the unit of the shrunk sheet, of which `factor` is one.
+    All lengths are in the unit of the scaled sheet, of which `factor` is one.
     """
 
     def __init__(self, given: Any, factor: Fraction) -> None:

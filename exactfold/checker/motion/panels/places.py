@@ -56,26 +56,8 @@ class Piece:
         return -floor(-(2 * s - self.low - self.high) / (self.high - self.low) * (1 << GRID))
 
 
-def shrunk(sheet: PanelSheet) -> Fraction:
-    """Move a corner of the sheet to 0, and scale it by a power of 2: all coordinates below 1.
-
-    Returns the scale.
-    """
-    x, y = sheet.points[sheet.panels[0][0]]
-    moved = [(a - x, b - y) for a, b in sheet.points]
-    bits, most = 32, 0
-    while most < 1 << 16:  # until the largest coordinate is known to some digits
-        bits += bits
-        ends = [c.enclosed(bits) for point in moved for c in point]
-        most = max(max(abs(c.low), abs(c.high)) for c in ends)
-    scale = Fraction(1 << bits, 1 << most.bit_length())
-    factor = sheet.tower.number(scale)
-    sheet.points = [(a * factor, b * factor) for a, b in moved]
-    return scale
-
-
 class Places:
-    """The positions of the vertices of a shrunk sheet; a panel in its middle is held.
+    """The positions of the vertices of a `scaled` sheet; a panel in its middle is held.
 
     So errors grow over half of the sheet only, and panels that fold onto the held panel are not
     turned along with it. `steps` has the other panels in the order in which they are placed, and

@@ -12,8 +12,16 @@ from typing import Final, NamedTuple
 from flint import arb
 
 from exactfold._support.verdict import PROVED, REFUTED, UNDECIDED, Verdict
+from exactfold.design.panels.vertex.kawasaki import (
+    BITS,
+    Turn,
+    angle_between,
+    angle_of,
+    kawasaki,
+    turn_for,
+)
 from exactfold.design.refutations.refutation import Letters
-from exactfold.exact.surds import Number, ball
+from exactfold.exact.surds import ball
 from exactfold.panels.nearby.box import Box
 from exactfold.panels.nearby.letters import NearbyFan
 from exactfold.panels.vertex.stars import Star, bracket, dot, star_at
@@ -30,7 +38,6 @@ _FLIPPED: Final = {"M": "V", "V": "M"}
 _MOST_FLIPS: Final = 4
 _MOST_CHOICES: Final = 64
 _MOST_PAIRS: Final = 5
-_BITS: Final = 64
 
 
 class _Pair(NamedTuple):
@@ -39,17 +46,6 @@ class _Pair(NamedTuple):
     one: int
     other: int
     off: float
-
-
-@dataclass(frozen=True)
-class Turn:
-    """A fold that, turned about the vertex, makes the vertex satisfy Kawasaki's condition.
-
-    `angle` is in degrees, positive if the fold turns counter-clockwise.
-    """
-
-    fold: Edge
-    angle: float
 
 
 @dataclass(frozen=True)
@@ -155,7 +151,7 @@ def _facts(
         holds,
         off,
         None if "U" in kept else abs(kept.count("M") - kept.count("V")) == 2 or not kept,
-        None if holds or off is None else _turn(sheet, flat, off),
+        None if holds or off is None else turn_for(sheet, flat, off),
     )
 
 
@@ -203,7 +199,7 @@ def _forced(star: Star, given: str, fan: Fan) -> dict[Edge, str]:
 
 def _straightened(star: Star) -> Iterator[tuple[Star, tuple[_Pair, ...]]]:
     """The star with nearly straight pairs made straight: one, several, or all of them."""
-    near = [(ball(x, _BITS), ball(y, _BITS)) for x, y in star.directions]
+    near = [(ball(x, BITS), ball(y, BITS)) for x, y in star.directions]
     pairs = tuple(
         _Pair(i, j, off)
         for i, j in combinations(range(len(star.folds)), 2)
@@ -235,79 +231,7 @@ def _bend(a: Point, b: Point) -> float:
     across = bracket(a, b)
     if not across:
         return 0.0
-    return abs(_angle(across, -dot(a, b))) if dot(a, b) < 0 else pi
-
-
-def kawasaki(star: Star) -> tuple[bool, float | None]:
-    """Whether every second sector adds up to pi exactly, and by how many degrees the sum is off.
-
-    The folds of the star are the folded creases at a vertex; None stands for an odd number of them.
-    The alternating sum of all sectors is the argument of a product of numbers d' / d, or of their
-    inverses, where d and d' are neighbouring directions as complex numbers. It lies between -2 pi
-    and 2 pi, so that it is 0 if and only if the product is positive.
-
-    >>> kawasaki(Star(0, ((0, 1), (0, 2), (0, 3), (0, 4)), ((1, 0), (0, 1), (-1, 0), (0, -1))))
-    (True, 0.0)
-    """
-    d, count = star.directions, len(star.directions)
-    if count == 0:
-        return True, 0.0
-    if count % 2:
-        return False, None
-    re: Number = 1
-    im: Number = 0
-    near = 0.0
-    for k in range(count):
-        a, b = d[k], d[(k + 1) % count]
-        along, across = dot(a, b), bracket(a, b)
-        near += (_float_angle(a, b)) * (-1) ** k
-        if k % 2:
-            across = -across
-        re, im = re * along - im * across, re * across + im * along
-    if im == 0 and re > 0:
-        return True, 0.0
-    angle = _angle(im, re)
-    angle += 2 * pi * round((near - angle) / (2 * pi))
-    return False, degrees(angle) / 2
-
-
-def _float_angle(a: Point, b: Point) -> float:
-    """The angle from one direction to another, counter-clockwise, between 0 and 2 pi."""
-    return _angle(bracket(a, b), dot(a, b)) % (2 * pi)
-
-
-def _angle(across: Number, along: Number) -> float:
-    """The angle with these exact multiples of its sine and cosine, to the precision of floats."""
-    bits = _BITS
-    while True:
-        y, x = ball(across, bits), ball(along, bits)
-        clear = [value.rel_accuracy_bits() > _BITS // 2 for value in (y, x)]
-        if (clear[0] or across == 0) and (clear[1] or along == 0):
-            return float(arb.atan2(y, x))
-        bits *= 2
-
-
-def _turn(sheet: PanelPattern, star: Star, off: float) -> Turn | None:
-    """The fold to turn by the smallest angle: one that ends in the border and is not straight.
-
-    A fold between an odd and an even sector takes from one what it gives to the other. Returns None
-    if the fold would have to pass another one.
-    """
-    best: tuple[tuple[bool, bool], Turn] | None = None
-    count = len(star.folds)
-    straight = Fan(star).opposite
-    for k, fold in enumerate(star.folds):
-        angle = off if k % 2 == 0 else -off
-        towards = (k + 1) % count if angle > 0 else k - 1
-        room = degrees(_float_angle(star.directions[k], star.directions[towards]))
-        room = room if angle > 0 else 360 - room
-        if room <= abs(angle):
-            continue
-        end = sum(fold) - star.vertex
-        rank = end not in sheet.boundary_set, straight[k] is not None
-        if best is None or rank < best[0]:
-            best = rank, Turn(fold, angle)
-    return None if best is None else best[1]
+    return abs(angle_of(across, -dot(a, b))) if dot(a, b) < 0 else pi
 
 
 # --- reasons -------------------------------------------------------------------------------------
@@ -371,7 +295,7 @@ def _geometry_text(star: Star, moving: Iterable[Edge]) -> str:
     for k in range(count):
         following = (k + 1) % count
         if fan.reach[k] == 0:
-            sector = degrees(_float_angle(star.directions[k], star.directions[following]))
+            sector = degrees(angle_between(star.directions[k], star.directions[following]))
             where = f"between folds {_named((star.folds[k], star.folds[following]), ' and ')}"
             if fan.opposite[k] is None:
                 return f"the sector {where} has {sector:.4g} degrees, more than 180"

@@ -22,10 +22,11 @@ from exactfold.checker.motion.panels import folding as panel_folding
 from exactfold.checker.motion.panels import times as panel_times
 from exactfold.checker.motion.panels.cut import cut
 from exactfold.checker.motion.panels.drive import DrivenModes
-from exactfold.checker.motion.panels.places import Places, shrunk
+from exactfold.checker.motion.panels.places import Places
 from exactfold.checker.motion.panels.series import BITS
 from exactfold.checker.motion.panels.times import OneRate, Rates
 from exactfold.checker.sheets.panels import read_panels
+from exactfold.checker.sheets.scaled import scaled
 
 SLOW = "mixed", "closing", "tiling", "vertex", "miura", "bent"
 
@@ -81,7 +82,7 @@ def test_a_fold_that_is_not_named_closes_in_modes_that_are_not_linear() -> None:
 
 @pytest.mark.parametrize("power", [-130, 130])
 def test_the_scale_of_a_sheet_does_not_matter(power: int) -> None:
-    """Positions have errors over a fixed denominator, so that the sheet is shrunk before."""
+    """Positions have errors over a fixed denominator, so that the sheet is scaled before."""
     document = fixture("panelmotion-clear")
     time = document["claims"]["clear"]
     vertices = document["pattern"]["vertices"]
@@ -347,7 +348,7 @@ def test_positions_are_those_of_the_frames(name: str) -> None:
     document = whole(name)
     sheet, _ = read_panels(document["pattern"])
     before = sheet.points
-    shrunk(sheet)
+    _, sheet.points = scaled(sheet)
     i, j = sheet.edges[0]
     sizes = [
         np.hypot(*(c.enclosed(90).low for c in minus(p[j], p[i]))) for p in (sheet.points, before)
