@@ -232,6 +232,7 @@ let exactly c xs =
 
 let largest = List.fold_left Z.max Z.zero
 let total l f = List.fold_left (fun s x -> Z.add s (f x)) Z.zero l
+let rec place v k = function [] -> 0 | w :: l -> if w = v then k else place v (k + 1) l
 
 (* With a reflex corner the space has no constant: that height of a basis which is largest becomes it. *)
 let with_constant (origin, directions) xs =
@@ -322,7 +323,7 @@ let within c flat space xs =
       let bound2 = largest (List.map (fun i -> total columns (fun c -> total columns (fun c' ->
         Z.abs (weighted i (fun b -> V.polar b c c'))))) index) in
       let half = Z.add two (Z.mul two (Z.cdiv bound0 over)) in
-      let place v = let rec go k = function [] -> 0 | w :: l -> if w = v then k else go (k + 1) l in go 0 names in
+      let place v = place v 0 names in
       Some (start last, V.Within { (point start) with chosen = (fun v -> List.mem v names); column;
         centre = (fun v -> m.(place v)); half; inverse = (fun v w -> y.(place v).(place w)); over; bound0; bound1; bound2;
         combination = fun v -> Option.value (List.assoc_opt v known) ~default:(Z.one, fun _ -> Z.zero) })
@@ -344,8 +345,7 @@ let rooted (d : V.drawing) (p : V.prepared) c flat root bits =
     let unit = Z.pow below size in
     let most = Z.max (Z.abs low) (Z.abs high) in
     let pairs = List.combine names (List.map (column Z.one) (List.tl root.powers)) in
-    let index v = let rec go k = function [] -> 0 | w :: l -> if w = v then k else go (k + 1) l in go 0 names in
-    let centre v = let j = index v in Z.mul (Z.pow low (j + 1)) (Z.pow below (size - j - 1)) in
+    let centre v = let j = place v 0 names in Z.mul (Z.pow low (j + 1)) (Z.pow below (size - j - 1)) in
     let half = largest (List.mapi (fun j _ ->
       Z.mul (Z.mul (Z.of_int (j + 1)) (Z.pow most j)) (Z.pow below (size - j - 1))) names) in
     let sp = { (point (column unit (List.hd root.powers))) with V.chosen = (fun v -> List.mem v names); centre; half;
