@@ -2,7 +2,8 @@
     lie on the motions that begin along the solutions of K_v = 0. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches
-  Drawing Integers Verify Curve Flex Displacements Motion Near Gap.
+  Drawing Integers Verify Curve Flex Displacements Motion Near Gap
+  Placed.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -251,48 +252,59 @@ Proof.
 Qed.
 End Ways.
 
-(** Four boundary vertices: move a configuration so that the first is at its place, the second on its line with the
-    first, and the third in the plane. If it is near the flat sheet, it is on one of 2^n motions, which begin along
-    the branches. *)
-Definition these_ways_only S b1 b2 b3 b4 : Prop := let vertices := inner S ++ rim S in
-  exists ms delta, 0 < delta /\ length ms = (2 ^ length (inner S))%nat /\ NoDup (map heights_of ms) /\
+(** Four boundary vertices: there are 2^n motions, which begin along the branches, such that every true configuration
+    near the flat sheet, moved in space, is on one of them. *)
+Definition these_ways_only S b1 b2 b4 : Prop := let vertices := inner S ++ rim S in
+  exists ms t0 delta, 0 < t0 /\ 0 < delta /\ length ms = (2 ^ length (inner S))%nat /\ NoDup (map heights_of ms) /\
     (forall h, In h (map heights_of ms) <-> representative S b4 h) /\
-    (forall h P z, In (h, P, z) ms -> exists t1 d C, delta <= t1 /\
+    (forall h P z, In (h, P, z) ms -> exists t1 d C, t0 <= t1 /\
       true_motion S (inner S) vertices (faces S) b1 b2 h t1 d C P z) /\
-    forall P z, true_lengths (at_ S) (faces S) P z -> held S b1 b2 P -> z b1 = 0 -> z b2 = 0 -> z b3 = 0 ->
-      (forall v, In v vertices -> bounded delta (sub (P v) (at_ S v)) /\ Rabs (z v) <= delta) ->
-      exists h P' z', In (h, P', z') ms /\ forall v, In v vertices -> P v = P' (z b4) v /\ z v = z' (z b4) v.
+    forall c, true_lengths (at_ S) (faces S) (fst c) (snd c) -> near (at_ S) vertices delta c ->
+      exists h P z t, In (h, P, z) ms /\ Rabs t <= t0 /\ same_distances vertices c (P t, z t).
 
 Theorem near_flat S b1 b2 b3 b4 : rim S = [b1; b2; b3; b4] ->
   cross (sub (at_ S b2) (at_ S b1)) (sub (at_ S b3) (at_ S b1)) <> 0 -> disk S (inner S) (faces S) ->
-  (forall h, representative S b4 h -> forall v, In v (inner S) -> ~ flat_star S v h) ->
-  these_ways_only S b1 b2 b3 b4.
+  (forall h, representative S b4 h -> forall v, In v (inner S) -> ~ flat_star S v h) -> these_ways_only S b1 b2 b4.
 Proof.
   intros Rim Cor Disk NF.
   assert (On : forall b, In b [b1; b2; b3; b4] -> In b (inner S ++ rim S)).
   { intros b Hb. apply in_or_app. right. now rewrite Rim. }
   assert (Apart : at_ S b1 <> at_ S b2).
   { intros E. apply Cor. rewrite E. unfold cross, sub. cbn [fst snd]. ring. }
-  destruct (ways S Disk b1 b2) with (r := unit b4) as (ms & delta & Pd & Len & Once & Sol & Mo & All).
+  destruct (ways S Disk b1 b2) with (r := unit b4) as (ms & t0 & Pt & Len & Once & Sol & Mo & All).
   { apply On. now left. } { apply On. right. now left. } { exact Apart. }
   { intros h Hr Hs. apply NF. now split. }
-  exists ms, delta. split; [exact Pd|]. split; [exact Len|]. split; [exact Once|]. split; [exact Sol|].
-  split; [exact Mo|].
-  intros P z True Held Z1 Z2 Z3 Near. apply (All (z b4) P z); try assumption.
-  - apply Near, On. simpl. tauto.
+  destruct (placing (at_ S) (inner S ++ rim S) b1 b2 b3) with (eps := t0) as (delta & Pd & Place);
+    try assumption; try (apply On; simpl; tauto).
+  exists ms, t0, delta. split; [exact Pt|]. split; [exact Pd|]. split; [exact Len|]. split; [exact Once|].
+  split; [exact Sol|]. split; [exact Mo|]. intros c True Near.
+  destruct (Place c Near) as (Same & Near' & H1 & H2 & Z1 & Z2 & Z3). set (c' := placed (at_ S) b1 b2 b3 c) in *.
+  destruct (All (snd c' b4) (fst c') (snd c')) as (h & P & z & Hm & E).
+  - apply Near', On. simpl. tauto.
+  - intros a b Hab. rewrite <- (True a b Hab).
+    assert (V : In a (inner S ++ rim S) /\ In b (inner S ++ rim S)).
+    { destruct (gluing S Disk) as (_ & vs & fs & G & Sd & Vs). apply Sd in Hab.
+      destruct (glued_on S _ vs fs G a b Hab). split; now apply Vs. }
+    destruct V as (Ha & Hb). specialize (Same a b Ha Hb). unfold dot3, sub3, position in Same. unfold dot.
+    cbn [fst snd] in *. lra.
+  - now split.
   - destruct (unit_rim S b1 b2 b3 b4 Rim Cor) as (U1 & U2 & U3 & U4). intros v Hv.
     rewrite Rim in Hv. destruct Hv as [<-|[<-|[<-|[<-|[]]]]]; rewrite ?U1, ?U2, ?U3, ?U4, ?Z1, ?Z2, ?Z3; ring.
+  - exact Near'.
+  - exists h, P, z, (snd c' b4). split; [exact Hm|]. split; [apply Near', On; simpl; tauto|].
+    intros u v Hu Hv. rewrite (Same u v Hu Hv). unfold position. cbn [fst snd].
+    destruct (E u Hu) as (-> & ->). now destruct (E v Hv) as (-> & ->).
 Qed.
 
 (** What the program accepts as a file of all branches, and as a disk. *)
 Theorem all_continue d p top given asked ms : verify_all d p top given asked = true ->
   moves_as_a_disk d (inside d) (triangles d) ms = true ->
-  exists (ok : check d = true) b1 b2 b3 b4, border d = [b1; b2; b3; b4] /\ these_ways_only (sheet_of d ok) b1 b2 b3 b4.
+  exists (ok : check d = true) b1 b2 b3 b4, border d = [b1; b2; b3; b4] /\ these_ways_only (sheet_of d ok) b1 b2 b4.
 Proof.
   intros V M.
   destruct (all_verified d p top given asked V) as (ok & b1 & b2 & b3 & b4 & Rim & l & _ & _ & Rep & Non & _).
   exists ok, b1, b2, b3, b4. split; [exact Rim|]. unfold moves_as_a_disk in M. apply andb_prop in M.
-  apply near_flat; [exact Rim| |exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
+  apply (near_flat _ b1 b2 b3 b4); [exact Rim| |exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
   - unfold verify_all in V. rewrite Rim, !andb_true_iff, negb_true_iff, Z.eqb_neq in V. destruct V as ((_ & N) & _).
     change (cross (sub (at_R d b2) (at_R d b1)) (sub (at_R d b3) (at_R d b1)) <> 0). rewrite cross_IZR.
     intros E. apply N. now apply eq_IZR.

@@ -9,19 +9,25 @@ let refuse format = Printf.ksprintf (fun text -> raise (Refused text)) format
 let unverified format = Printf.ksprintf (fun text -> raise (Unverified text)) format
 let invalid format = Printf.ksprintf (fun text -> raise (Invalid text)) format
 
-(* JSON without floating-point numbers and without escapes in texts. *)
+(* JSON without floating-point numbers and without escapes in texts; a drawing has both, and keeps them as written. *)
 type json = Null | Word of string | Text of string | Number of string | Items of json list | Entries of (string * json) list
 
-let parse s =
+let parse ?(drawing = false) s =
   let size = String.length s and at = ref 0 in
   let peek () = if !at < size then s.[!at] else '\000' in
   let rec blank () = if !at < size && String.contains " \t\n\r" s.[!at] then (incr at; blank ()) in
   let expect c = blank (); if peek () <> c then refuse "'%c' is expected at byte %d" c !at; incr at in
   let text () =
     expect '"';
-    let stop = try String.index_from s !at '"' with Not_found | Invalid_argument _ -> refuse "a text does not end" in
+    let rec ending k = match String.index_from s k '"' with
+      | exception (Not_found | Invalid_argument _) -> refuse "a text does not end"
+      | stop ->
+        let first = ref stop in
+        while drawing && !first > k && s.[!first - 1] = '\\' do decr first done;
+        if (stop - !first) mod 2 = 1 then ending (stop + 1) else stop in
+    let stop = ending !at in
     let found = String.sub s !at (stop - !at) in
-    if String.contains found '\\' then refuse "escapes in texts are not read";
+    if not drawing && String.contains found '\\' then refuse "escapes in texts are not read";
     at := stop + 1;
     found
   in
@@ -48,7 +54,7 @@ let parse s =
       match String.sub s first (!at - first) with
       | "null" -> Null
     | ("true" | "false") as word -> Word word
-      | word when word <> "" && String.for_all (fun c -> String.contains "-0123456789" c) word -> Number word
+      | word when word <> "" && String.for_all (String.contains (if drawing then "-+.eE0123456789" else "-0123456789")) word -> Number word
       | word -> refuse "'%s' at byte %d is not read" word first
   in
   let found = value () in
@@ -98,7 +104,7 @@ let rational what = function
 
 (* A sheet: coordinates multiplied by a common denominator and divided by a common factor, and the digest of
    the pattern. *)
-type sheet = { points : (Z.t * Z.t) array; triangles : (int * int * int) list; digest : string }
+type sheet = { exact : ((Z.t * Z.t) * (Z.t * Z.t)) array; points : (Z.t * Z.t) array; triangles : (int * int * int) list; digest : string }
 
 let triple what = function
   | [ a; b; c ] -> (small what a, small what b, small what c)
@@ -122,7 +128,7 @@ let sheet pattern =
   let lines = "exactfold pattern 1"
     :: List.map (fun (x, y) -> Printf.sprintf "v %s %s" (shown x) (shown y)) (Array.to_list exact)
     @ List.map (fun (a, b, c) -> Printf.sprintf "t %d %d %d" a b c) (List.sort compare (List.map first triangles)) in
-  { points = Array.map (fun (x, y) -> (scaled x, scaled y)) exact; triangles;
+  { exact; points = Array.map (fun (x, y) -> (scaled x, scaled y)) exact; triangles;
     digest = Sha256.hex (String.concat "\n" lines ^ "\n") }
 
 (* The folds in order, as the letters count them, with the third corners on their left and right. *)
