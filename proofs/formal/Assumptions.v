@@ -1,6 +1,7 @@
 (** What the theorems assume: printed by the build, compared by tests/proofs/test_formal.py. *)
 From Exactfold Require Import Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches Notch
-  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact Flex
+  Krawczyk Drawing Rational Boxes Certificate Counted Tables Integers Verify Charts Triangles Emptied Exact
+  Patterns Space Contracting Rooted Within Listed Reflex Flex
   Curve Displacements Motion Near Gap Placed Ways Example BranchExample.
 
 Print Assumptions key_lemma.
@@ -23,6 +24,8 @@ Print Assumptions all_emptied_verified.
 Print Assumptions all_notched_emptied_verified.
 Print Assumptions exact_verified.
 Print Assumptions exact_notched_verified.
+Print Assumptions listed_verified.
+Print Assumptions reflex_verified.
 Print Assumptions disk_moves.
 Print Assumptions curve.
 Print Assumptions motion.
@@ -42,5 +45,6 @@ Definition others :=
    two_branches_per_pair, krawczyk_nonsingular, unique, cone_positive, sheet_of, Example.shapes, Example.at_most,
    boxed, no_star_is_flat, near_branch, near_solution, passed,
    open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
-   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch, gap, placing).
+   triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch, gap, placing,
+   @all_counted, @all_listed, @listed, @raised_listed).
 Print Assumptions others.

@@ -50,16 +50,16 @@ Definition exact_fold (h : zheights) (letters : nat -> option letter) (f : fold_
   | Some (Some valley) => (if valley then 0 <? bent h f else bent h f <? 0)%Z
   end.
 
-Definition verify_exact d p (kept : nat -> bool) (claimed : nat -> option bool) h (letters : nat -> option letter) :=
-  sound d p && forallb (exact_hub kept claimed h) (hubs p) && forallb (exact_fold h letters) (folds p).
+Definition exact p (kept : nat -> bool) (claimed : nat -> option bool) h (letters : nat -> option letter) : bool :=
+  forallb (exact_hub kept claimed h) (hubs p) && forallb (exact_fold h letters) (folds p).
 
 (** The signs [up] are those claimed; a flat vertex may have any. *)
 Definition agrees (d : drawing) (claimed : nat -> option bool) (up : nat -> bool) : Prop :=
   forall v e, In v (inside d) -> claimed v = Some e -> up v = e.
 
 (** The heights are the only solution with these signs, curvatures at the vertices that are kept, and rim. *)
-Theorem exact_verified d p kept claimed h letters : verify_exact d p kept claimed h letters = true ->
-  exists ok : check d = true, let S := sheet_of d ok in let k := fun v => if kept v then K S v (reals h) else 0 in
+Definition exactly d p (kept : nat -> bool) claimed h (letters : nat -> option letter) (ok : check d = true) : Prop :=
+  let S := sheet_of d ok in let k := fun v => if kept v then K S v (reals h) else 0 in
   solves S k (reals h) /\
   (forall v e, In v (inside d) -> claimed v = Some e -> 0 < sign e * K2 S v (cone S v) (reals h)) /\
   (forall v, In v (inside d) -> claimed v = None -> flat_star S v (reals h)) /\
@@ -67,39 +67,84 @@ Theorem exact_verified d p kept claimed h letters : verify_exact d p kept claime
   (forall up g, agrees d claimed up -> has_rim S (reals h) g -> solves S k g -> in_nappes S up g -> g = reals h) /\
   (forall f i j l m w, In f (folds p) -> ends f = (i, j, l, m) -> letters (name f) = Some w ->
     match w with Some valley => 0 < sign valley * bend S i j l m (reals h) | None => bend S i j l m (reals h) = 0 end).
+
+Section Exact.
+Variable d : drawing.
+Variable p : prepared.
+Variable ok : check d = true.
+Hypothesis sound_p : sound d p = true.
+Notation S := (sheet_of d ok).
+
+(** What is measured of heights at a vertex: the curvature and the side of the mountain. *)
+Lemma hub_forms b : In b (hubs p) -> let v := at_vertex b in let t := reals (mountain_at b) in
+  In v (inside d) /\ 0 < IZR (scale b) /\ 0 < K2 S v t t /\ (forall u, In u (fan S v) -> t u < t v) /\
+  forall h, IZR (fst (measured h (h v) (wedges b))) = IZR (scale b) * K2 S v (reals h) (reals h) /\
+    IZR (snd (measured h (h v) (wedges b))) = 2 * IZR (scale b) * K2 S v t (reals h).
 Proof.
-  unfold verify_exact, sound. cbv zeta. rewrite !andb_true_iff, !forallb_forall. intros (((Sw & Ok) & Hubs) & Folds).
+  intros Hb. pose proof sound_p as O. unfold sound in O. cbv zeta in O. rewrite andb_true_iff in O.
+  destruct O as (_ & Ok).
+  set (at_z := look (places d) (0, 0)%Z) in *. set (fan_of := look (fans_table d) []) in *.
+  assert (At : at_z = place d) by exact (table_nth _ _).
+  assert (Fan : fan_of = fun v => nth v (fans_of d) []) by exact (table_nth _ _).
+  destruct (hub_means d p at_z fan_of _ _ b Ok Hb) as (Hi & H). cbv zeta. set (v := at_vertex b) in *.
+  assert (Hv : In v (inside d ++ border d)) by (apply in_or_app; now left).
+  unfold hub_ok in H. fold v in H. rewrite Fan in H. rewrite !andb_true_iff in H.
+  destruct H as ((((((Ps & Ss) & Ws) & Pt) & Down) & _) & _). apply Z.ltb_lt, IZR_lt in Ps.
+  rewrite forallb_forall in Down. set (t := mountain_at b) in *.
+  pose proof (fun h => measured_R d at_z ok At v (scale b) t h (wedges b) _ Hv (fun s Hs => Hs) Ss Ws) as M.
+  cbv zeta in M. split; [exact Hi|]. split; [exact Ps|]. split; [|split; [|exact M]].
+  - apply Z.ltb_lt, IZR_lt in Pt. destruct (M t) as (Mt & _). rewrite Mt in Pt.
+    change (0 < IZR (scale b) * K2 S v (reals t) (reals t)) in Pt.
+    apply (Rmult_lt_reg_l (IZR (scale b))); [assumption|]. now rewrite Rmult_0_r.
+  - intros u Hu. unfold reals. apply IZR_lt, Z.ltb_lt. now apply Down.
+Qed.
+
+Lemma flat_measured b h : In b (hubs p) -> exact_hub (fun _ => false) (fun _ => None) h b = true ->
+  flat_star S (at_vertex b) (reals h).
+Proof.
+  intros Hb. destruct (hub_forms b Hb) as (Hi & Ps & Pt & _ & M). destruct (M h) as (Mk & Ms). unfold exact_hub.
+  assert (Hv : In (at_vertex b) (inside d ++ border d)) by (apply in_or_app; now left).
+  destruct (measured h (h (at_vertex b)) (wedges b)) as (k, s). cbn [fst snd negb andb] in *.
+  rewrite andb_true_iff, !Z.eqb_eq. intros (-> & ->). rewrite (K_polar_sheet S _ (reals h)) in Mk by exact Hv.
+  symmetry in Mk, Ms. apply Rmult_integral in Mk, Ms.
+  apply (null_flat_side S _ (reals (mountain_at b))); [exact Hi|exact Pt| |].
+  - now destruct Mk; [lra|].
+  - now destruct Ms; [lra|].
+Qed.
+
+(** What is measured of heights at a fold. *)
+Lemma fold_forms f i j l m : In f (folds p) -> ends f = (i, j, l, m) ->
+  exists w, 0 < w /\ forall h, IZR (bent h f) = w * bend S i j l m (reals h).
+Proof.
+  intros Hf E. pose proof sound_p as O. unfold sound in O. cbv zeta in O. rewrite andb_true_iff in O.
+  destruct O as (_ & Ok).
+  unfold prepared_ok in Ok. rewrite !andb_true_iff, !forallb_forall in Ok. destruct Ok as (((_ & Forms) & _) & _).
   set (at_z := look (places d) (0, 0)%Z) in *. set (fan_of := look (fans_table d) []) in *.
   set (known := has (set_of (inside d ++ border d))) in *.
-  set (fold_at := fun k => Map.find (key k) (table (folds p))) in *.
-  pose proof (swift_checked d Sw) as ok. exists ok. set (S := sheet_of d ok).
   assert (At : at_z = place d) by exact (table_nth _ _).
   assert (Fan : fan_of = fun v => nth v (fans_of d) []) by exact (table_nth _ _).
   assert (Kn : forall v, known v = true -> In v (inside d ++ border d)) by (intros v Hv; now apply has_In in Hv).
-  pose proof Ok as O. unfold prepared_ok in O. rewrite !andb_true_iff, !forallb_forall in O.
-  destruct O as ((((Same & _) & Forms) & _) & _). apply same_list_eq in Same.
+  pose proof (fun h => bent_R d at_z fan_of known ok At Fan Kn h f i j l m E (Forms f Hf)) as B. cbv zeta in B.
+  destruct (B (fun _ => 0%Z)) as (C1 & C2 & _).
+  exists (cross (spoke (at_ S) i j) (spoke (at_ S) i l) * cross (spoke (at_ S) i m) (spoke (at_ S) i j)). split.
+  - apply Rmult_lt_0_compat; [exact (face_of_corner S _ _ _ C1)|exact (face_of_corner S _ _ _ C2)].
+  - intros h. now destruct (B h) as (_ & _ & E' & _).
+Qed.
+
+Lemma exact_means kept claimed h letters : exact p kept claimed h letters = true ->
+  exactly d p kept claimed h letters ok.
+Proof.
+  unfold exact, exactly. cbv zeta. rewrite !andb_true_iff, !forallb_forall. intros (Hubs & Folds).
+  assert (Same : inside d = map at_vertex (hubs p)) by now destruct (sound_means d p sound_p) as (_ & E & _).
   assert (Vertex : forall v, In v (inside d) ->
     (forall e, claimed v = Some e -> 0 < sign e * K2 S v (cone S v) (reals h)) /\
     (claimed v = None -> flat_star S v (reals h)) /\ (kept v = true -> 0 < K S v (reals h)) /\
     (kept v = false -> K S v (reals h) = 0)).
-  { intros v Hv. rewrite <- Same in Hv. apply in_map_iff in Hv. destruct Hv as (b & <- & Hb). specialize (Hubs b Hb).
-    destruct (hub_means d p at_z fan_of known fold_at b Ok Hb) as (Hi & H). set (v := at_vertex b) in *.
+  { intros v Hv. rewrite Same in Hv. apply in_map_iff in Hv. destruct Hv as (b & <- & Hb). specialize (Hubs b Hb).
+    destruct (hub_forms b Hb) as (Hi & Ps & Pt & Down & M). set (v := at_vertex b) in *.
+    set (t := reals (mountain_at b)) in *. destruct (M h) as (Mk & Ms). clear M.
     assert (Hv : In v (inside d ++ border d)) by (apply in_or_app; now left).
-    unfold hub_ok in H. fold v in H. rewrite Fan in H. rewrite !andb_true_iff in H.
-    destruct H as ((((((Ps & Ss) & Ws) & Pt) & Down) & _) & _). apply Z.ltb_lt, IZR_lt in Ps.
-    rewrite forallb_forall in Down. set (t := mountain_at b) in *.
-    pose proof (measured_R d at_z ok At v (scale b) t h (wedges b) _ Hv (fun s Hs => Hs) Ss Ws) as M.
-    pose proof (measured_R d at_z ok At v (scale b) t t (wedges b) _ Hv (fun s Hs => Hs) Ss Ws) as Mt.
-    cbv zeta in M, Mt. destruct Mt as (Mt & _). apply Z.ltb_lt, IZR_lt in Pt. rewrite Mt in Pt.
-    unfold exact_hub in Hubs. fold v in Hubs. destruct (measured h (h v) (wedges b)) as (k, s). cbn [fst snd] in M.
-    destruct M as (Mk & Msd).
-    change (IZR k = IZR (scale b) * K2 S v (reals h) (reals h)) in Mk.
-    change (IZR s = 2 * IZR (scale b) * K2 S v (reals t) (reals h)) in Msd.
-    change (0 < IZR (scale b) * K2 S v (reals t) (reals t)) in Pt.
-    assert (Pt' : 0 < K2 S v (reals t) (reals t)).
-    { apply (Rmult_lt_reg_l (IZR (scale b))); [assumption|]. now rewrite Rmult_0_r. }
-    assert (Hd : forall u, In u (fan S v) -> reals t u < reals t v).
-    { intros u Hu. unfold reals. apply IZR_lt, Z.ltb_lt. now apply Down. }
+    unfold exact_hub in Hubs. fold v in Hubs. destruct (measured h (h v) (wedges b)) as (k, s). cbn [fst snd] in Mk, Ms.
     rewrite (K_polar_sheet S v (reals h)) in Mk by exact Hv.
     assert (Null : k = 0%Z -> K S v (reals h) = 0).
     { intros ->. symmetry in Mk. apply Rmult_integral in Mk. destruct Mk; [lra|assumption]. }
@@ -108,23 +153,23 @@ Proof.
       now rewrite Rmult_0_r. }
     destruct (claimed v) as [up|] eqn:Cl.
     - rewrite andb_true_iff in Hubs. destruct Hubs as (Hk & Hs).
-      assert (Sd : 0 < sign up * K2 S v (reals t) (reals h)).
+      assert (Sd : 0 < sign up * K2 S v t (reals h)).
       { assert (Two : 0 < 2 * IZR (scale b)) by lra.
         apply (Rmult_lt_reg_l (2 * IZR (scale b))); [assumption|]. rewrite Rmult_0_r.
-        destruct up; apply Z.ltb_lt, IZR_lt in Hs; rewrite Msd in Hs; unfold sign; lra. }
+        destruct up; apply Z.ltb_lt, IZR_lt in Hs; rewrite Ms in Hs; unfold sign; lra. }
       split; [|split; [easy|]].
       + intros e [= <-]. destruct (kept v).
-        * apply Z.ltb_lt in Hk. apply (side_by_mountain S v (reals t)); try assumption.
+        * apply Z.ltb_lt in Hk. apply (side_by_mountain S v t); try assumption.
           rewrite K_polar_sheet by exact Hv. now apply Pos.
-        * apply Z.eqb_eq in Hk. apply (null_side S v (reals t)); try assumption. now apply Null.
+        * apply Z.eqb_eq in Hk. apply (null_side S v t); try assumption. now apply Null.
       + destruct (kept v); (split; [|try easy]).
         * intros _. apply Pos. now apply Z.ltb_lt in Hk.
         * easy.
         * intros _. apply Null. now apply Z.eqb_eq in Hk.
     - rewrite !andb_true_iff, negb_true_iff in Hubs. destruct Hubs as ((Nk & Hk) & Hs). apply Z.eqb_eq in Hk, Hs.
       split; [easy|]. rewrite Nk. split; [|split; [easy|intros _; now apply Null]].
-      intros _. apply (null_flat_side S v (reals t)); try assumption; [now apply Null|].
-      rewrite Hs in Msd. symmetry in Msd. apply Rmult_integral in Msd. destruct Msd; [lra|assumption]. }
+      intros _. apply (null_flat_side S v t); try assumption; [now apply Null|].
+      rewrite Hs in Ms. symmetry in Ms. apply Rmult_integral in Ms. destruct Ms; [lra|assumption]. }
   split; [|split; [|split; [|split; [|split]]]].
   - intros v Hv. destruct (Vertex v Hv) as (_ & _ & _ & Z). destruct (kept v); [reflexivity|now apply Z].
   - intros v e Hv. now apply Vertex.
@@ -142,15 +187,21 @@ Proof.
         -- rewrite (Ag v e Hv Cl). apply Rlt_le. now apply Sg.
         -- rewrite K2_sym, (flat_null S v (reals h) Hv (Fl eq_refl)). lra.
   - intros f i j l m w Hf E As. specialize (Folds f Hf). unfold exact_fold in Folds. rewrite As in Folds.
-    destruct (bent_R d at_z fan_of known ok At Fan Kn h f i j l m E (Forms f Hf)) as (C1 & C2 & B & _).
-    fold S in C1, C2, B. pose proof (face_of_corner S _ _ _ C1) as P1. pose proof (face_of_corner S _ _ _ C2) as P2.
-    cbv zeta in B. set (a := cross (spoke (at_ S) i j) (spoke (at_ S) i l)) in *.
-    set (b := cross (spoke (at_ S) i m) (spoke (at_ S) i j)) in *. set (x := bend S i j l m (reals h)) in *.
-    assert (Pab : 0 < a * b) by now apply Rmult_lt_0_compat. destruct w as [valley|].
-    + apply (Rmult_lt_reg_l (a * b)); [assumption|]. rewrite Rmult_0_r.
+    destruct (fold_forms f i j l m Hf E) as (a & Pa & B). specialize (B h). destruct w as [valley|].
+    + apply (Rmult_lt_reg_l a); [assumption|]. rewrite Rmult_0_r.
       destruct valley; apply Z.ltb_lt, IZR_lt in Folds; rewrite B in Folds; unfold sign; lra.
     + apply Z.eqb_eq, (f_equal IZR) in Folds. rewrite B in Folds. apply Rmult_integral in Folds.
       destruct Folds; [lra|assumption].
+Qed.
+End Exact.
+
+Definition verify_exact d p kept claimed h letters : bool := sound d p && exact p kept claimed h letters.
+
+Theorem exact_verified d p kept claimed h letters : verify_exact d p kept claimed h letters = true ->
+  exists ok : check d = true, exactly d p kept claimed h letters ok.
+Proof.
+  unfold verify_exact. rewrite andb_true_iff. intros (So & Ex). destruct (sound_means d p So) as (ok & _).
+  exists ok. now apply exact_means.
 Qed.
 
 (** The same with a reflex corner [r], which pops up: the only representative with these signs is a multiple. *)

@@ -81,6 +81,17 @@ Proof.
     intros j Hj. rewrite move_unit_other; [reflexivity|]. intros ->. contradiction.
 Qed.
 
+Lemma sum_unit l k (f : nat -> R) : NoDup l -> In k l -> sum l (fun j => unit k j * f j) = f k.
+Proof.
+  induction l as [|j l IH]; [easy|]. intros D H. inversion D as [|? ? N D']; subst. cbn [sum].
+  destruct (Nat.eq_dec j k) as [->|Ne].
+  - unfold unit at 1. rewrite upd_same, sum_zero; [ring|]. intros i Hi. unfold unit.
+    rewrite upd_other; [unfold zero; ring|].
+    intros ->. contradiction.
+  - destruct H as [->|H]; [contradiction|]. rewrite IH by assumption. unfold unit. rewrite upd_other by assumption.
+    unfold zero. ring.
+Qed.
+
 (** A seminorm is bounded by a multiple of the sum of the coordinates. *)
 Definition seminorm (p : vec -> R) :=
   p zero = 0 /\ (forall a, 0 <= p a) /\ forall a s b, p (move a s b) <= p a + Rabs s * p b.

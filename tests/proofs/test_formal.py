@@ -52,6 +52,8 @@ ASSUMED = {
     "all_notched_emptied_verified": CLASSICAL,
     "exact_verified": CLASSICAL,
     "exact_notched_verified": CLASSICAL,
+    "listed_verified": CLASSICAL,
+    "reflex_verified": CLASSICAL,
     "disk_moves": REALS,
     "curve": REALS | {"ClassicalDedekindReals.sig_not_dec"},
     "motion": REALS | {"ClassicalDedekindReals.sig_not_dec"},

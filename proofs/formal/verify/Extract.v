@@ -1,7 +1,7 @@
 (** The programs of Verify.v in OCaml: numbers of vertices become machine integers, integers become
     those of Zarith (integer.ml). *)
 From Coq Require Import ZArith Extraction ExtrOcamlBasic ExtrOcamlNatInt ExtrOcamlZBigInt.
-From Exactfold Require Import Drawing Integers Verify Charts Emptied Exact Flex.
+From Exactfold Require Import Drawing Integers Verify Charts Emptied Exact Space Rooted Listed Reflex Flex.
 
 Extract Inlined Constant Nat.eqb => "Int.equal".
 Extract Inlined Constant Nat.eq_dec => "Int.equal".
@@ -16,4 +16,4 @@ Extract Inlined Constant Z.eqb => "Integer.equal".
 
 Extraction "verified.ml" verify_all verify_one verify_all_notched verify_one_notched sound closes emptied passes
   raised_passes measured is_bent verify_exact verify_exact_notched exact_hub exact_fold names_side
-  weight within moves_as_a_disk.
+  weight within moves_as_a_disk curved sided polar powers paired root_ok verify_listed reflex_ok verify_reflex.

@@ -112,8 +112,7 @@ let one_branch data =
   if Z.leq denominator Z.zero then invalid "the denominator is not positive";
   let sign j = small ~least:(-1) ~most:1 "a vertex sign" j in
   let signs = Array.of_list (List.map sign (items "vertex_signs" (entry "vertex_signs" claims))) in
-  let all = Array.of_list (List.sort compare (t.hidden @ Array.to_list inside)) in
-  if Array.length signs <> Array.length all then refuse "the numbers of signs and of vertices differ";
+  let claimed = own_signs t signs in
   let gauge = string "gauge" (entry "gauge" claims) in
   if gauge = "saddle" then begin
     match d.border with
@@ -125,22 +124,8 @@ let one_branch data =
   end
   else if gauge <> "rim" then invalid "the gauge is neither saddle nor rim"
   else if corner <> None then invalid "the gauge \"rim\" needs a convex boundary";
-  let claimed = Hashtbl.create 64 in
   Option.iter (fun r -> Hashtbl.replace claimed r 1) corner;
-  Array.iteri (fun k v ->
-    if gone.(v) && signs.(k) <> 0 then invalid "vertex %d lies inside a triangulated triangle, and its sign is not 0" v;
-    Hashtbl.replace claimed v signs.(k)) all;
-  let text = string "assignment" (entry "assignment" claims) in
-  let ends = Array.map (fun (i, j, _, _) -> (i, j)) (folds file) in
-  if String.length text <> Array.length ends then refuse "the number of letters is wrong";
-  let places = Hashtbl.create 64 in
-  Array.iteri (fun k (i, j) ->
-    if (gone.(i) || gone.(j)) && not (String.contains "FU" text.[k]) then
-      invalid "the fold %d, %d lies inside a triangulated triangle, and is not F" i j;
-    Hashtbl.replace places (i, j) k) ends;
-  let own = Array.of_list p.V.folds in
-  let text = String.init (Array.length own) (fun k ->
-    let ((i, j), _), _ = own.(k).V.ends in text.[Hashtbl.find places (i, j)]) in
+  let text = own_letters t (string "assignment" (entry "assignment" claims)) in
   let distance = rational "the squared distance" (entry "squared_distance" claims) in
   let exact (b : V.hub) = corner = Some b.at_vertex
     || Z.equal Z.zero (fst (V.measured (fun u -> h.(u)) h.(b.at_vertex) b.wedges)) in

@@ -5,7 +5,7 @@ open Sheets
 module V = Verified
 
 let usage = "usage: exactfold-verify FILE [DRAWING.fold]\n\n\
-  Verifies a certificate of all branches (compact, version 1) or of one branch (version 1) of a triangulated\n\
+  Verifies a certificate of all branches or of one branch (version 1) of a triangulated\n\
   sheet that is convex, or has four corners of which one is reflex, and says what of the file it does not verify.\n\
   With a drawing, it also compares the vertices and faces of the sheet with those written there.\n\
   Exit codes: 0 verified; 1 refuted, or not verified; 2 usage; 3 not a certificate that is read here;\n\
@@ -70,8 +70,6 @@ let notch_chart j corner inside =
   ((fun v -> Option.value (List.assoc_opt v whole) ~default:Z.zero),
     fun h bits -> Z.div (Z.sub (Z.shift_left unit bits) (rest h)) lead)
 
-let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
-
 let all_branches header blocks claims =
   let evidence = entry "evidence" header in
   only "format version pattern evidence provenance" header;
@@ -101,14 +99,7 @@ let all_branches header blocks claims =
       unverified "the chart does not name the side on which vertex %d pops up when a triangle closes the notch" r
   | _ -> ());
   let folds = List.length p.V.folds and count = string_of_int (1 lsl size) in
-  let claim key = match entry key claims with
-    | Number n -> Z.to_string (digits key n)
-    | _ -> refuse "%s is no number" key in
-  List.iter (fun (key, expected) -> agrees key (claim key) expected)
-    [ ("interior", string_of_int (size + List.length t.hidden)); ("boundary", "4");
-      ("folds", string_of_int (Array.length (Reading.folds file))); ("degrees_of_freedom", "1"); ("distinct", count);
-      ("with_multiplicity", Z.to_string (Z.shift_left Z.one (size + List.length t.hidden))); ("real", count); ("nonreal", "0") ];
-  agrees "sha256" (string "sha256" (entry "sha256" claims)) file.digest;
+  check_claims t claims count;
   let continued = string "true_branches" (entry "true_branches" claims) in
   if continued <> "proved" then invalid "the claim \"true_branches\" is not \"proved\", as in every file of this version";
   let blocks = Array.of_list blocks in
@@ -121,10 +112,7 @@ let all_branches header blocks claims =
     if fst !now <> n / length then now := (n / length, block size folds (n / length) length blocks.(n / length));
     snd !now (n mod length) in
   let heights root bits =
-    let h = Array.make (Array.length file.points) Z.zero in
-    let shift = bits - root.bits in
-    Array.iteri (fun k v -> let c = root.center.(k) in
-      h.(v) <- if shift >= 0 then Z.shift_left c shift else Z.shift_right c (-shift)) inside;
+    let h = Proposing.shifted (Array.length file.points) inside root.center root.bits bits in
     (match lifted, corner with
     | Some (_, height), Some r -> h.(r) <- height h bits
     | _ -> h.(List.nth d.border 3) <- Z.shift_left Z.one bits);
@@ -133,9 +121,8 @@ let all_branches header blocks claims =
     | None -> V.passes p (fun _ -> false) e (fun u -> h.(u)) letters
     | Some r -> V.raised_passes d p r e (fun u -> h.(u)) letters in
   let current = ref (-1) and flat = ref 0 in
-  (* What is proposed for a sign vector: with more and more digits, until floating point, or if careful the
-     verified test itself, finds all letters decided. It depends on the sign vector alone, and its array is
-     never changed after it is handed over; so the theorem, which is about functions, applies. *)
+  (* What is proposed for a sign vector. It depends on the sign vector alone, and its array is never changed after
+     it is handed over; so the theorem, which is about functions, applies. *)
   let verify careful =
     let proposed = ref (-1, [||], fun _ -> None) in
     current := -1;
@@ -145,17 +132,7 @@ let all_branches header blocks claims =
       if !current <> n then begin
         current := n;
         let root = root n in
-        let rec refine = function
-          | [] -> raise Exit
-          | bits :: more ->
-            let aim = bits - 14 in
-            let h = heights root bits in
-            if not (careful || more = [] || Proposing.clear rough h bits aim) then refine more
-            else begin
-              for _ = 0 to (bits - 40) / 40 do Proposing.step lights corner h bits aim done;
-              if careful && not (passes e h root.letters) then refine more else h
-            end in
-        let h = refine precisions in
+        let h = Proposing.refined lights rough corner careful (fun h -> passes e h root.letters) (heights root) in
         let done_ = (1 lsl size) - n in
         if done_ land 4095 = 0 && size > 13 then Printf.eprintf "\r%d of %d roots%!" done_ (1 lsl size);
         flat := !flat + root.flat;
@@ -195,23 +172,8 @@ let all_branches header blocks claims =
 
 (* --- files --- *)
 
-let other format version why = refuse "the file is \"%s\", version %s%s; only version 1 of \"exactfold compact \
-  certificate\" and of \"exactfold branch\" are verified here" format version why
-
-(* Why a file of version 2 is outside: each vertex inside a triangulated triangle doubles the multiplicity, and what is
-   left above 1 is claimed of roots at which other stars are flat. *)
-let outside header claims =
-  let evidence = entry "evidence" header in
-  let number key = match entry key claims with Number n -> digits key n | _ -> refuse "%s is no number" key in
-  let inside = match evidence with
-    | Entries pairs when List.mem_assoc "triangles" pairs ->
-      List.concat_map (fun j -> items "inside" (entry "inside" j)) (items "triangles" (entry "triangles" evidence))
-    | _ -> [] in
-  if Z.lt (Z.shift_left (number "distinct") (List.length inside)) (number "with_multiplicity") then
-    ", which claims multiple roots, at which stars are flat: the theorem counts branches only where no star is flat"
-  else if not (Z.equal (number "boundary") (Z.of_int 4)) then
-    Printf.sprintf ", of a sheet with %s boundary vertices, not four" (Z.to_string (number "boundary"))
-  else ", which has an entry for each root of any kind"
+let other format version why = refuse "the file is \"%s\", version %s%s; only \"exactfold compact certificate\", version 2 of \
+  \"exactfold certificate\" and version 1 of \"exactfold branch\" are verified here" format version why
 
 let verify path =
   let text = file path in
@@ -228,16 +190,17 @@ let verify path =
       let claims () = match parse (List.hd reversed) with
         | Entries [ ("claims", c) ] -> c
         | _ -> invalid "the file is UNFINISHED: its last line has no claims" in
-      let claims = match kind header with
-        | "exactfold compact certificate", "1" -> claims ()
-        | ("exactfold compact certificate" as format), "2" -> other format "2" (outside header (claims ()))
+      let all = match kind header with
+        | "exactfold compact certificate", "1" -> all_branches
+        | "exactfold compact certificate", "2" -> Listing.of_lines
         | format, version -> other format version "" in
-      all_branches header (List.rev (List.tl reversed)) claims
+      all header (List.rev (List.tl reversed)) (claims ())
     | _ -> invalid "the file is UNFINISHED: it has no blocks"
   else begin
     let data = parse text in
     match kind data with
     | "exactfold branch", "1" -> Branch.one_branch data
+    | "exactfold certificate", "2" -> Listing.of_object data
     | ("exactfold branch" as format), "2" -> other format "2" ", of a sheet with angle deficits"
     | ("exactfold branch" as format), "3" -> other format "3" ", with merged faces"
     | format, version -> other format version ""

@@ -302,3 +302,27 @@ let clear rough h bits aim =
     let x = at i in
     let bend = a *. (at j -. x) +. b *. (at l -. x) +. c *. (at m -. x) in
     bend *. bend > 4. *. ldexp slack (-aim)) rough
+
+(* Heights in units of 2^-bits, from whole numbers in units of 2^-own. *)
+let shifted size inside center own bits =
+  let h = Array.make size Z.zero and shift = bits - own in
+  Array.iteri (fun k v -> h.(v) <- if shift >= 0 then Z.shift_left center.(k) shift else Z.shift_right center.(k) (-shift)) inside;
+  h
+
+let precisions = [ 56; 72; 96; 128; 256; 512; 1024; 2048 ]
+
+let improve lights kept h bits = for _ = 0 to (bits - 40) / 40 do step lights kept h bits (bits - 14) done
+
+(* Heights with more and more digits, until floating point, or if [careful] the verified test itself, finds all letters
+   decided. *)
+let refined lights rough kept careful passes heights =
+  let rec refine = function
+    | [] -> raise Exit
+    | bits :: more ->
+      let h = heights bits in
+      if not (careful || more = [] || clear rough h bits (bits - 14)) then refine more
+      else begin
+        improve lights kept h bits;
+        if careful && not (passes h) then refine more else h
+      end in
+  refine precisions

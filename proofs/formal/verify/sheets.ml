@@ -5,7 +5,7 @@ module V = Verified
 
 let plural n word =
   let ending = if n = 1 then word else if word.[String.length word - 1] = 'x' then
-    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ "s" in
+    String.sub word 0 (String.length word - 2) ^ "ices" else word ^ (if word = "branch" then "es" else "s") in
   Printf.sprintf "%d %s" n ending
 let not_verified text = Printf.printf "not verified here: %s\n" text
 let agrees key found expected = if found <> expected then invalid "the claim \"%s\" is %s, not %s" key found expected
@@ -89,3 +89,39 @@ let letter_of root text k = match text.[k] with
   | 'V' -> Some true
   | 'U' | 'F' -> None
   | c -> refuse "root %d has a fold with the letter %c" root c
+
+(* The claimed signs of all vertices inside the sheet of the file, by vertex; 0 in triangulated triangles. *)
+let own_signs t signs =
+  let all = Array.of_list (List.sort compare (t.hidden @ Array.to_list t.inside)) in
+  if Array.length signs <> Array.length all then refuse "the numbers of signs and of vertices differ";
+  let claimed = Hashtbl.create 64 in
+  Array.iteri (fun k v -> Hashtbl.replace claimed v signs.(k)) all;
+  List.iter (fun v -> if Hashtbl.find claimed v <> 0 then
+    invalid "vertex %d lies inside a triangulated triangle, and its sign is not 0" v) t.hidden;
+  claimed
+
+(* The letters of the folds that are left without the triangulated triangles, of those of all folds. *)
+let own_letters t text =
+  let ends = Array.map (fun (i, j, _, _) -> (i, j)) (folds t.file) in
+  if String.length text <> Array.length ends then refuse "the number of letters is wrong";
+  let gone = Array.make (Array.length t.file.points) false in
+  List.iter (fun v -> gone.(v) <- true) t.hidden;
+  let places = Hashtbl.create 64 in
+  Array.iteri (fun k (i, j) ->
+    if (gone.(i) || gone.(j)) && not (String.contains "FU" text.[k]) then
+      invalid "the fold %d, %d lies inside a triangulated triangle, and is not F" i j;
+    Hashtbl.replace places (i, j) k) ends;
+  let own = Array.of_list t.p.V.folds in
+  String.init (Array.length own) (fun k -> let ((i, j), _), _ = own.(k).V.ends in text.[Hashtbl.find places (i, j)])
+
+(* The claims of a file of all branches: how many there are, and of which sheet. *)
+let check_claims t claims count =
+  let claim key = match entry key claims with
+    | Number n -> Z.to_string (digits key n)
+    | _ -> refuse "%s is no number" key in
+  let vertices = Array.length t.inside + List.length t.hidden in
+  List.iter (fun (key, expected) -> agrees key (claim key) expected)
+    [ ("interior", string_of_int vertices); ("boundary", "4");
+      ("folds", string_of_int (Array.length (folds t.file))); ("degrees_of_freedom", "1"); ("distinct", count);
+      ("with_multiplicity", Z.to_string (Z.shift_left Z.one vertices)); ("real", count); ("nonreal", "0") ];
+  agrees "sha256" (string "sha256" (entry "sha256" claims)) t.file.digest
