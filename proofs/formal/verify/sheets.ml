@@ -79,6 +79,9 @@ let meaning_of t =
 
 let meaning t = ignore (meaning_of t)
 
+let continues theorem = Printf.printf "          Near the flat sheet each branch continues to one true motion, and there are no others:\n\
+  \          by theorem %s.\n" theorem
+
 let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
   \          closes the notch.\n" r
 
