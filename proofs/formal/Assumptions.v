@@ -33,6 +33,8 @@ Print Assumptions true_motion_exists.
 Print Assumptions ways.
 Print Assumptions near_flat.
 Print Assumptions all_continue.
+Print Assumptions one_continues.
+Print Assumptions exact_continues.
 
 (** The others together. *)
 Definition others :=

@@ -8,6 +8,7 @@ import io
 import json
 import pickle
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pygltflib
@@ -25,10 +26,26 @@ from exactfold.pattern.triangulating.panels import triangles_by_face, triangles_
 
 PATTERN = random_square(4, seed=1)
 BRANCH = find_branch(PATTERN, "+-++")
-MOTION = follow(BRANCH, frames=6)
-BACK = follow(BRANCH, frames=6, side=-1)
-PANELS = follow_panels(regular_twist(6, (Fraction(0), Fraction(-5))), frames=4)
-CLOSED = follow(find_branch("two-vertex", "+-"), until="return", frames=5)
+
+
+@cache
+def ahead():
+    return follow(BRANCH, frames=6)
+
+
+@cache
+def mirror():
+    return follow(BRANCH, frames=6, side=-1)
+
+
+@cache
+def closed():
+    return follow(find_branch("two-vertex", "+-"), until="return", frames=5)
+
+
+@cache
+def twist():
+    return follow_panels(regular_twist(6, (Fraction(0), Fraction(-5))), frames=4)
 
 
 # --- FOLD ----------------------------------------------------------------------------------------
@@ -40,8 +57,9 @@ def written(motion, tmp_path, **options):
     return json.loads(path.read_text()), load_fold(path)
 
 
-@pytest.mark.parametrize("motion", [MOTION, BACK, CLOSED], ids=["motion", "mirror", "closed"])
-def test_the_flat_frame_is_exact_and_all_others_follow(motion, tmp_path):
+@pytest.mark.parametrize("made", [ahead, mirror, closed])
+def test_the_flat_frame_is_exact_and_all_others_follow(made, tmp_path):
+    motion = made()
     document, file = written(motion, tmp_path, title="sheet")
     pattern = motion.branch.pattern
     assert file.pattern == pattern
@@ -78,8 +96,8 @@ def test_the_flat_frame_is_exact_and_all_others_follow(motion, tmp_path):
 
 
 def test_letters_change_where_an_angle_does(tmp_path):
-    document, _ = written(CLOSED, tmp_path)
-    assert np.max(np.abs(CLOSED.angles)) > np.pi
+    document, _ = written(closed(), tmp_path)
+    assert np.max(np.abs(closed().angles)) > np.pi
     changed = [f for f in document["file_frames"] if "edges_assignment" in f]
     assert 2 < len(changed) < 5
     assert set(changed[0]["edges_assignment"]) == {"F", "B"}
@@ -88,8 +106,8 @@ def test_letters_change_where_an_angle_does(tmp_path):
 
 
 def test_panels_stay_polygons_with_exact_corners(tmp_path):
-    document = json.loads(write_motion(PANELS, tmp_path / "p.fold", title="twist")[0].read_text())
-    sheet = PANELS.pattern
+    document = json.loads(write_motion(twist(), tmp_path / "p.fold", title="twist")[0].read_text())
+    sheet = twist().pattern
     opened = open_pattern(tmp_path / "p.fold")
     assert opened.sheet == sheet
     assert opened.field_name == "Q(sqrt 3)"
@@ -99,17 +117,17 @@ def test_panels_stay_polygons_with_exact_corners(tmp_path):
     assert document["frame_title"].startswith("flat sheet, with the fold angles at time 0.524 of")
     facts = document["frame_exactfold:motion"]
     assert (facts["modes"], facts["way"], facts["free_folds"]) == ([1], 1, [])
-    assert (facts["status"], facts["pattern"]) == (str(PANELS.status), sheet.sha256)
+    assert (facts["status"], facts["pattern"]) == (str(twist().status), sheet.sha256)
     assert max(map(abs, document["edges_foldAngle"])) == pytest.approx(30)
     edges = [tuple(edge) for edge in document["edges_vertices"]]
     letters = dict(zip(edges, document["edges_assignment"], strict=True))
-    assert {fold: letters[fold] for fold in sheet.folds} == dict(PANELS.assignment)
+    assert {fold: letters[fold] for fold in sheet.folds} == dict(twist().assignment)
     assert len(document["file_frames"]) == 4
     for k, frame in enumerate(document["file_frames"]):
-        assert frame["vertices_coords"] == PANELS.coords[k].tolist()
+        assert frame["vertices_coords"] == twist().coords[k].tolist()
         angles = dict(zip(edges, frame["edges_foldAngle"], strict=True))
         shown = [angles[fold] for fold in sheet.folds]
-        assert shown == pytest.approx(np.degrees(PANELS.angles[k]).tolist(), abs=1e-6)
+        assert shown == pytest.approx(np.degrees(twist().angles[k]).tolist(), abs=1e-6)
 
 
 def test_panels_that_are_not_convex_are_cut_into_triangles(tmp_path):
@@ -123,12 +141,12 @@ def test_panels_that_are_not_convex_are_cut_into_triangles(tmp_path):
     assert across.sum() / 2 == 16
     assert [len(piece) for piece in triangles_by_face(sheet)] == [3, 1]
     for ending in ("glb", "obj"):
-        path = write_motion(PANELS, tmp_path / f"p.{ending}")[0]
+        path = write_motion(twist(), tmp_path / f"p.{ending}")[0]
         found = trimesh.load(path)
         mesh = next(iter(found.geometry.values())) if ending == "glb" else found
-        expected = sum(len(face) - 2 for face in PANELS.pattern.faces)
+        expected = sum(len(face) - 2 for face in twist().pattern.faces)
         assert len(mesh.faces) == expected
-        assert mesh.area == pytest.approx(area_of(PANELS.pattern), rel=1e-6)
+        assert mesh.area == pytest.approx(area_of(twist().pattern), rel=1e-6)
 
 
 def area_of(sheet):
@@ -185,7 +203,7 @@ class Reader:
 @pytest.mark.parametrize("ending", ["glb", "gltf"])
 def test_the_animation_shows_the_frames(tmp_path, ending):
     path = tmp_path / f"motion.{ending}"
-    assert write_motion(MOTION, path, title="sheet") == (path,)
+    assert write_motion(ahead(), path, title="sheet") == (path,)
     reader = Reader(path)
     model = reader.model
     assert model.asset.extras["vertex_signs"] == "+-++"
@@ -198,7 +216,7 @@ def test_the_animation_shows_the_frames(tmp_path, ending):
     assert times.tolist() == pytest.approx(np.arange(11) * 0.8)  # there and back
     triangles = np.array(PATTERN.triangles)
     for key, frame in [(0, 0), (3, 3), (5, 5), (7, 3), (10, 0)]:
-        corners = MOTION.coords[frame][triangles]
+        corners = ahead().coords[frame][triangles]
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         up = across / np.linalg.norm(across, axis=1, keepdims=True)
         for side, primitive in zip((1, -1), mesh.primitives, strict=True):
@@ -215,7 +233,7 @@ def test_the_animation_shows_the_frames(tmp_path, ending):
 
 
 def test_a_motion_that_returns_goes_one_way(tmp_path):
-    write_motion(CLOSED, tmp_path / "loop.glb")
+    write_motion(closed(), tmp_path / "loop.glb")
     reader = Reader(tmp_path / "loop.glb")
     times, weights = reader.keys()
     assert times.tolist() == [0, 1, 2, 3, 4]
@@ -223,7 +241,7 @@ def test_a_motion_that_returns_goes_one_way(tmp_path):
 
 
 def test_another_reader_sees_the_flat_sheet_with_y_up(tmp_path):
-    write_motion(MOTION, tmp_path / "motion.glb")
+    write_motion(ahead(), tmp_path / "motion.glb")
     scene = trimesh.load(tmp_path / "motion.glb")
     front, back = scene.geometry.values()
     assert len(front.faces) == len(back.faces) == len(PATTERN.triangles)
@@ -235,9 +253,9 @@ def test_another_reader_sees_the_flat_sheet_with_y_up(tmp_path):
 
 
 def test_stl_has_a_mesh_for_each_frame(tmp_path):
-    files = write_motion(MOTION, tmp_path / "m.stl")
+    files = write_motion(ahead(), tmp_path / "m.stl")
     assert [file.name for file in files] == [f"m_000{k}.stl" for k in range(6)]
-    for file, coords in zip(files, MOTION.coords, strict=True):
+    for file, coords in zip(files, ahead().coords, strict=True):
         mesh = trimesh.load(file, process=False)
         corners = coords[np.array(PATTERN.triangles)].reshape(-1, 3)
         assert np.asarray(mesh.triangles).reshape(-1, 3) == pytest.approx(corners, abs=1e-6)
@@ -246,28 +264,28 @@ def test_stl_has_a_mesh_for_each_frame(tmp_path):
 def test_stl_without_trimesh_names_the_extra(tmp_path, monkeypatch):
     monkeypatch.setattr(packages, "find_spec", lambda name: None)
     with pytest.raises(PackageMissingError, match=r"pip install 'exactfold\[meshes\]'"):
-        write_motion(MOTION, tmp_path / "m.stl")
+        write_motion(ahead(), tmp_path / "m.stl")
     assert not list(tmp_path.iterdir())
 
 
 def test_csv_has_the_angles_of_each_frame_in_a_row(tmp_path):
-    [file] = write_motion(MOTION, tmp_path / "m.csv")
+    [file] = write_motion(ahead(), tmp_path / "m.csv")
     with file.open(newline="") as text:
         head, *rows = csv.reader(text)
     assert head == ["time", *(f"{i}-{j}" for i, j in PATTERN.folds)]
     table = np.array(rows, dtype=float)
-    assert (table[:, 0] == MOTION.times).all()
-    assert (table[:, 1:] == np.degrees(MOTION.angles)).all()
+    assert (table[:, 0] == ahead().times).all()
+    assert (table[:, 1:] == np.degrees(ahead().angles)).all()
 
 
 # --- OBJ -----------------------------------------------------------------------------------------
 
 
 def test_a_file_for_each_frame(tmp_path):
-    files = write_motion(MOTION, tmp_path / "m.obj")
+    files = write_motion(ahead(), tmp_path / "m.obj")
     assert [file.name for file in files] == [f"m_000{k}.obj" for k in range(6)]
     assert sorted(tmp_path.iterdir()) == list(files)
-    for file, coords in zip(files, MOTION.coords, strict=True):
+    for file, coords in zip(files, ahead().coords, strict=True):
         mesh = trimesh.load(
             io.StringIO(file.read_text()), file_type="obj", process=False, maintain_order=True
         )
@@ -281,17 +299,18 @@ def test_a_file_for_each_frame(tmp_path):
 def test_refusals(tmp_path):
     for name in ("motion", "motion.dxf", "fold"):
         with pytest.raises(UsageError, match=r"\.fold, \.glb, \.gltf, \.obj"):
-            write_motion(MOTION, tmp_path / name)
+            write_motion(ahead(), tmp_path / name)
     with pytest.raises(UsageError, match="is not a motion"):
         write_motion(BRANCH, tmp_path / "motion.fold")
     for name in ("none/m.fold", "none/m.glb", "none/m.obj"):
         with pytest.raises(UnwritableFileError):
-            write_motion(MOTION, tmp_path / name)
+            write_motion(ahead(), tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("motion", [MOTION, PANELS], ids=["branch", "panels"])
-def test_arrays_of_a_motion_cannot_be_written_to(motion):
+@pytest.mark.parametrize("made", [ahead, twist], ids=["branch", "panels"])
+def test_arrays_of_a_motion_cannot_be_written_to(made):
+    motion = made()
     for same in (motion, pickle.loads(pickle.dumps(motion)), copy.deepcopy(motion)):
         assert same == motion
         for array in (same.times, same.coords, same.angles):

@@ -46,7 +46,8 @@ def candidates(
     part: Gradients, zeros: FloatArray, radii: Radii, chosen: IndexArray, most: int
 ) -> Iterator[Candidate]:
     """Sheets beyond the nearest changes of letters of the chosen real zeros, the nearest first."""
-    lengths = np.linalg.norm(radii.slopes[chosen], axis=3).sum(axis=2)
+    slopes = radii.slopes[chosen]
+    lengths = np.hypot(slopes[..., 0], slopes[..., 1]).sum(axis=2)  # their squares may overflow
     with np.errstate(divide="ignore", invalid="ignore"):
         ahead = np.abs(radii.densities[chosen]) / lengths
     ahead[~np.isfinite(ahead)] = np.inf
@@ -68,7 +69,7 @@ def _followed(part: Gradients, zero: FloatArray, fold: int) -> FloatArray | None
         points = part.points + moves
         densities, slopes = part.slopes(now, points)
         density, slope = float(densities[fold]), slopes[fold]
-        lengths = np.linalg.norm(slope, axis=1)
+        lengths = np.hypot(slope[:, 0], slope[:, 1])
         total = lengths.sum()
         left = density - float((slope * moves).sum())
         if not np.isfinite(left) or total == 0:

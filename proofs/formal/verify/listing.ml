@@ -107,7 +107,7 @@ let all_roots header entries claims =
   if t.corner <> None then print_string "          Where the file says \"either\" this holds of one of the two sides.\n";
   stay_flat t;
   let continue = meaning_of t && simple && t.corner = None in
-  if continue then continues "listed_continue";
+  if continue then all_continue "listed_continue";
   if undecided > 0 then not_verified (Printf.sprintf "%s F" (plural undecided "letter"));
   if simple && not continue then not_verified "that every branch continues to a true motion"
 

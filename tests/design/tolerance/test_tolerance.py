@@ -239,13 +239,16 @@ def test_a_letter_that_is_nearly_flat_is_not_taken_for_flat(digits):
         assert found.limit != "on branch - fold 0-4 is flat"
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("exponent", [20, 90, -90])
 def test_a_huge_or_tiny_sheet_has_the_radius_of_one_of_ordinary_size(exponent):
     pattern = exactfold.random_square(2, seed=3)
     scale = Fraction(10) ** exponent
     points = [(x * scale, y * scale) for x, y in pattern.vertices]
     found = exactfold.tolerance(CreasePattern(points, pattern.triangles))
-    assert found.radius / float(scale) == pytest.approx(exactfold.tolerance(pattern).radius)
+    ordinary = exactfold.tolerance(pattern)
+    assert found.radius / float(scale) == pytest.approx(ordinary.radius)
+    assert found.upper / float(scale) == pytest.approx(ordinary.upper)
 
 
 @pytest.mark.parametrize(("scale", "shift"), [(10**200, 0), (10**400, 0), (1, 10**16)])
