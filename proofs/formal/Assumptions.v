@@ -33,6 +33,8 @@ Print Assumptions true_motion_exists.
 Print Assumptions ways.
 Print Assumptions near_flat.
 Print Assumptions all_continue.
+Print Assumptions one_continues.
+Print Assumptions exact_continues.
 
 (** The others together. *)
 Definition others :=
@@ -44,5 +46,5 @@ Definition others :=
    boxed, no_star_is_flat, near_branch, near_solution, passed,
    open_solution_on_a_branch, branch_has_one_raised, notched, triangle_curvature,
    triangle_flat, flex_curvature, flex_iff, disk_checked, swift_checked, the_branch, gap, placing,
-   @all_counted, @all_listed, @listed, @raised_listed).
+   @all_counted, @all_listed, @listed, @raised_listed, listed_continue).
 Print Assumptions others.

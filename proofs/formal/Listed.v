@@ -2,7 +2,8 @@
     triangles are allowed. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Star KeyLemma Flat Complex Theorems Branches Patterns
-  Triangles Drawing Tables Rational Certificate Integers Verify Emptied Exact Space Within.
+  Triangles Drawing Tables Rational Certificate Integers Verify Emptied Exact Space Within
+  Flex Ways.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -186,3 +187,22 @@ Proof.
   - intros z Hz Fl. apply E. split; [|exact Fl]. intros v Hv. rewrite Eq by exact Hv. now apply Hz.
 Qed.
 End Listed.
+
+(** If no star is flat on any branch, and the sheet is a disk, these are the ways to fold. *)
+Theorem listed_continue d p common parts roots ms : verify_listed d p common parts roots = true ->
+  (forall r, In r roots -> flats signs_of (inside d) r = []) -> moves_as_a_disk d (inside d) (triangles d) ms = true ->
+  exists (ok : check d = true) b1 b2 b3 b4, border d = [b1; b2; b3; b4] /\ these_ways_only (sheet_of d ok) b1 b2 b4.
+Proof.
+  intros V NF M. destruct (listed_verified d p common parts roots V)
+    as (ok & b1 & b2 & b3 & b4 & Rim & hs & Hs & _ & Rep & _).
+  exists ok, b1, b2, b3, b4. split; [exact Rim|]. unfold moves_as_a_disk in M. apply andb_prop in M.
+  apply (near_flat _ b1 b2 b3 b4); [exact Rim| |exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
+  - unfold verify_listed in V. rewrite Rim, !andb_true_iff, negb_true_iff, Z.eqb_neq in V.
+    destruct V as ((((_ & N) & _) & _) & _).
+    change (cross (sub (at_R d b2) (at_R d b1)) (sub (at_R d b3) (at_R d b1)) <> 0). rewrite cross_IZR.
+    intros E. apply N. now apply eq_IZR.
+  - intros h Hh v Hv Fl. apply Rep in Hh. clear - Hs Hh NF Hv Fl.
+    induction Hs as [|r g l hs (_ & _ & Simple & _) _ IH]; [easy|]. destruct Hh as [->|Hh].
+    + apply (jacobian_singular _ h v Hv Fl), Simple, NF. now left.
+    + apply IH; [intros x Hx; apply NF; now right|exact Hh].
+Qed.

@@ -2,7 +2,7 @@
     lie on the motions that begin along the solutions of K_v = 0. *)
 From Coq Require Import Reals ZArith List Lra Lia Arith Bool FunctionalExtensionality.
 From Exactfold Require Import Sums Vectors Nappes Sheet Identities Star KeyLemma Flat Complex Theorems Branches
-  Drawing Integers Verify Curve Flex Displacements Motion Near Gap
+  Drawing Integers Verify Exact Curve Flex Displacements Motion Near Gap
   Placed.
 Import ListNotations.
 Open Scope R_scope.
@@ -309,4 +309,39 @@ Proof.
     change (cross (sub (at_R d b2) (at_R d b1)) (sub (at_R d b3) (at_R d b1)) <> 0). rewrite cross_IZR.
     intros E. apply N. now apply eq_IZR.
   - intros h Hh v Hv Fl. exact (jacobian_singular _ h v Hv Fl (Non h (proj2 (Rep h) Hh))).
+Qed.
+
+(** What the program accepts as a file of one branch with signs at all vertices, and as a disk. *)
+Theorem one_continues d p up h asked ms : verify_one d p up h asked = true -> forallb (is_bent asked) (hubs p) = true ->
+  moves_as_a_disk d (inside d) (triangles d) ms = true ->
+  exists ok : check d = true, let S := sheet_of d ok in let vertices := inner S ++ rim S in
+  exists g, has_rim S (reals h) g /\ solves S (fun _ => 0) g /\ in_nappes S up g /\
+    forall b1 b2, In b1 vertices -> In b2 vertices -> at_ S b1 <> at_ S b2 ->
+      exists t1 delta C P z, true_motion S (inner S) vertices (faces S) b1 b2 g t1 delta C P z.
+Proof.
+  unfold verify_one. rewrite andb_true_iff, forallb_forall. intros (So & Pass) Bent M.
+  destruct (sound_means d p So) as (ok & Hubs & H). destruct (H _ _ _ _ Pass) as (_ & g & Gr & Gs & Gn & Sg & _).
+  unfold moves_as_a_disk in M. apply andb_prop in M. exists ok. cbv zeta. exists g.
+  split; [exact Gr|]. split; [exact Gs|]. split; [exact Gn|]. intros b1 b2 H1 H2 Apart.
+  apply true_motion_exists; try assumption; [exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
+  apply jacobian_nonsingular. intros v Hv. right. split; [now apply Gs|]. intros Fl.
+  assert (Hin : In v (map at_vertex (hubs p))) by (rewrite <- Hubs; exact Hv).
+  apply in_map_iff in Hin. destruct Hin as (b & <- & Hb). specialize (Sg b Hb (Bent b Hb)).
+  rewrite K2_sym, (flat_null _ _ g Hv Fl) in Sg. lra.
+Qed.
+
+(** The same of heights that solve the equations exactly. *)
+Theorem exact_continues d p claimed h letters ms : verify_exact d p (fun _ => false) claimed h letters = true ->
+  forallb (fun v => match claimed v with Some _ => true | None => false end) (inside d) = true ->
+  moves_as_a_disk d (inside d) (triangles d) ms = true ->
+  exists ok : check d = true, let S := sheet_of d ok in let vertices := inner S ++ rim S in
+  forall b1 b2, In b1 vertices -> In b2 vertices -> at_ S b1 <> at_ S b2 ->
+    exists t1 delta C P z, true_motion S (inner S) vertices (faces S) b1 b2 (reals h) t1 delta C P z.
+Proof.
+  rewrite forallb_forall. intros V Bent M. destruct (exact_verified _ _ _ _ _ _ V) as (ok & Gs & Sg & _).
+  unfold moves_as_a_disk in M. apply andb_prop in M. exists ok. cbv zeta. intros b1 b2 H1 H2 Apart.
+  apply true_motion_exists; try assumption; [exact (disk_checked d (inside d) ok (triangles d) ms (proj2 M))|].
+  apply jacobian_nonsingular. intros v Hv. right. split; [now apply Gs|]. intros Fl.
+  specialize (Bent v Hv). destruct (claimed v) as [e|] eqn:E; [|discriminate]. specialize (Sg v e Hv E).
+  rewrite K2_sym, (flat_null _ _ (reals h) Hv Fl) in Sg. lra.
 Qed.

@@ -61,6 +61,8 @@ ASSUMED = {
     "ways": CLASSICAL,
     "near_flat": CLASSICAL,
     "all_continue": CLASSICAL,
+    "one_continues": CLASSICAL,
+    "exact_continues": CLASSICAL,
     "others": CLASSICAL,
 }
 """What each theorem rests on: axioms of Coq's real numbers, as docs/formal.md lists them."""

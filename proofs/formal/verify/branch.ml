@@ -17,6 +17,11 @@ let positive_saddle sheet (a, b, c, d) h =
   let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
   Z.sign sum * (if first <> 0 then first else most) > 0
 
+let continues proved theorem =
+  if proved then Printf.printf "          It continues to one true motion, with the boundary at multiples of these heights,\n\
+    \          by theorem %s.\n" theorem
+  else not_verified "that it continues to a true motion"
+
 (* Heights near a solution; [zeros] vertices are claimed to be flat. The squared distance of the heights as integers
    is claimed to be at most [top] / [below]. *)
 let near_branch t claimed h text zeros (top, below) =
@@ -49,7 +54,7 @@ let near_branch t claimed h text zeros (top, below) =
   let near = corner = None && V.within p up given top below in
   if near then print_string "          It has the squared distance of the file, by theorem distance_verified.\n";
   stay_flat t;
-  meaning t;
+  continues (meaning_of t && others = 0) "one_continues";
   if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
   if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
   if not near then not_verified "the squared distance"
@@ -80,7 +85,7 @@ let exact_branch t claimed h text distance =
     (if corner = None then "exact_verified" else "exact_notched_verified");
   Option.iter raised corner;
   stay_flat t;
-  meaning t;
+  continues (meaning_of t && List.for_all (fun v -> sign v <> None) d.V.inside) "exact_continues";
   if corner <> None then not_verified "the squared distance"
 
 let one_branch data =

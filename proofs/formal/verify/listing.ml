@@ -106,9 +106,10 @@ let all_roots header entries claims =
     (plural (List.length roots) "branch") (if t.corner = None then "listed_verified" else "reflex_verified");
   if t.corner <> None then print_string "          Where the file says \"either\" this holds of one of the two sides.\n";
   stay_flat t;
-  meaning t;
+  let continue = meaning_of t && simple && t.corner = None in
+  if continue then all_continue "listed_continue";
   if undecided > 0 then not_verified (Printf.sprintf "%s F" (plural undecided "letter"));
-  if simple then not_verified "that every branch continues to a true motion"
+  if simple && not continue then not_verified "that every branch continues to a true motion"
 
 (* The entries of the blocks, each with its root and what is claimed of it. *)
 let in_blocks evidence blocks =

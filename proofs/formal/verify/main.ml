@@ -164,8 +164,7 @@ let all_branches header blocks claims =
     print_string "          The chart of the file names this side, by theorem chart_verified.\n") corner;
   stay_flat t;
   let continue = meaning_of t in
-  if continue then print_string "          Near the flat sheet each branch continues to one true motion, and there are no others:\n\
-    \          by theorem all_continue.\n";
+  if continue then all_continue "all_continue";
   if !flat > 0 then not_verified (Printf.sprintf "%s F" (plural !flat "letter"));
   if t.parts <> [] then not_verified "the multiplicity of each branch";
   if not continue then not_verified "that every branch continues to a true motion"

@@ -5,7 +5,6 @@ open Reading
 module V = Verified
 
 (* --- linear algebra over the rational numbers --- *)
-
 let dot u x = let s = ref Q.zero in Array.iteri (fun k a -> if Q.sign a <> 0 then s := Q.add !s (Q.mul a x.(k))) u; !s
 let less row f other = Array.map2 (fun x y -> Q.sub x (Q.mul f y)) row other
 
