@@ -3,6 +3,7 @@
 import json
 import random
 import re
+import shutil
 import subprocess
 from collections.abc import Callable
 from fractions import Fraction
@@ -134,6 +135,11 @@ def compact_forgeries() -> dict[str, Callable[[Lines], object]]:
         radii[1] = 255
         put(lines[1], "radii", radii)
 
+    def flat(lines: Lines) -> None:
+        listed_exactly(lines)
+        letters = lines[1]["exact"][0]["assignment"]
+        listed_exactly(lines, assignment="F" + letters[1:])
+
     def claim(**changes: object) -> Callable[[Lines], object]:
         return lambda lines: lines[-1]["claims"].update(changes)
 
@@ -166,6 +172,11 @@ def compact_forgeries() -> dict[str, Callable[[Lines], object]]:
         "root 1 of block 0 is given twice or not at all": unlisted,
         "no fold with the letter M or V": lambda lines: listed_exactly(lines, assignment="U" * 13),
         "has another number of letters": lambda lines: listed_exactly(lines, assignment="M"),
+        "has the letter F and is not flat": flat,
+        "radius is not positive": lambda lines: listed_exactly(lines, radius="-1"),
+        "a coordinate is no rational number": lambda lines: lines[0]["pattern"]["vertices"][
+            0
+        ].__setitem__(0, 0),
         "has a fold with the letter X": lambda lines: listed_exactly(lines, assignment="X" * 13),
         "has another number of heights": lambda lines: listed_exactly(lines, center=["1"]),
         "a face has a vertex that is not there": lambda lines: lines[0]["pattern"]["triangles"][
@@ -534,6 +545,7 @@ def test_forged_certificates_of_one_branch_are_refused(verifier: Path, tmp_path:
         ("evidence", "heights", negated),
         ("claims", "assignment", other[:1] + letters[1:]),
         ("claims", "assignment", letters[1:]),
+        ("claims", "assignment", "F" + letters[1:]),
         ("claims", "vertex_signs", [-s for s in given["claims"]["vertex_signs"]]),
         ("claims", "vertex_signs", given["claims"]["vertex_signs"][1:]),
         ("claims", "vertex_signs", [0, *given["claims"]["vertex_signs"][1:]]),
@@ -718,10 +730,108 @@ def test_the_sheet_is_that_of_a_drawing(verifier: Path, tmp_path: Path) -> None:
     ):
         found, said = compared(_drawn(pattern, **changes))
         assert (found, why in said) == (code, True), said
+        assert code == 1 or f"exactfold-verify: {drawing}: " in said
+    assert compared("\ufeff" + _drawn(pattern))[0] == 0
+    escaped = _drawn(pattern, **{key: [*exact[:-1], ["1/3", "1/3"]]}).replace(
+        "coords", "coord\\u0073"
+    )
+    found, said = compared(escaped)
+    assert (found, "escapes in keys are not read" in said) == (3, True)
+    (tmp_path / "d.fold").unlink()
+    code, said = run(verifier, tmp_path / "c", drawing)
+    assert (code, f"exactfold-verify: {drawing}: " in said) == (3, True)
     assert compared(_drawn(pattern).replace('"faces_vertices"', '"faces"'))[0] == 3
-    for number in ("1e5000", "1.2.3", "--1", "1e", "."):
+    for number in ("1e5000", "1.2.3", "--1", "1e", ".", "0e-4611686018427387904"):
         text = _drawn(pattern).replace("0.0", number, 1)
         assert compared(text)[0] == 3, number
+
+
+@pytest.mark.slow
+def test_a_drawing_far_from_the_origin(verifier: Path, tmp_path: Path) -> None:
+    """Exact coordinates may differ from decimals by what is small on the drawing, or rounding."""
+    far = 10**9 + Fraction(1, 3)
+    near = sample_random_square(2, 3).pattern
+    pattern = CreasePattern([(x + far, y + far) for x, y in near.vertices], near.triangles)
+    stream_branches(pattern, tmp_path / "c")
+    drawing = tmp_path / "d.fold"
+    exact = [[str(x), str(y)] for x, y in pattern.vertices]
+    for moved, code in ((0.0, 0), (0.25, 3)):
+        points = [[float(x), float(y)] for x, y in pattern.vertices]
+        points[-1][0] -= moved
+        changes = {"vertices_exactfold:coords": exact, "vertices_coords": points}
+        drawing.write_text(_drawn(pattern, **changes))
+        found, said = run(verifier, tmp_path / "c", drawing)
+        assert (found, "has two different places" in said) == (code, code == 3), said
+
+
+@pytest.mark.slow
+def test_the_side_from_which_a_listing_shows_a_branch(verifier: Path, tmp_path: Path) -> None:
+    """Both branches of the dart have the sign - in the file; a sign vector agrees with one."""
+    source = CERTIFICATES / "listing-dart.json"
+    code, text = run(verifier, source)
+    assert code == 0
+    assert "Seen from the side on which\n          vertex 1 pops up" in text
+    assert "each sign vector agrees with one" in text
+    assert "Each sign vector" not in text
+    path = tmp_path / "forged.json"
+    mirror = str.maketrans("+-MV", "-+VM")
+    shown: list[tuple[int, dict[str, str], str]] = [
+        (1, {"representative": "either"}, 'is shown, not "either"'),
+        (1, {"representative": "either", "vertex_signs": "+", "assignment": "MVMM"}, "is shown"),
+        (1, {"vertex_signs": "+", "assignment": "MVMM"}, "branch 1 did not pass the test"),
+        (1, {"vertex_signs": "0"}, "branch 1 did not pass the test"),
+        (0, {"assignment": "FVFF"}, "branch 0 did not pass the test"),
+    ]
+    for number, changes, said in shown:
+        given = json.loads(source.read_text(encoding="utf-8"))
+        given["claims"]["branches"][number] |= changes
+        path.write_text(json.dumps(given), encoding="utf-8")
+        code, text = run(verifier, path)
+        assert (code, said in text) == (1, True), text
+        assert valid(path) is None
+    assert "VMVV".translate(mirror) == "MVMM"
+    given = json.loads((CERTIFICATES / "listing-reflex-either-side.json").read_text("utf-8"))
+    for center, known in ((0, True), (1, False)):
+        root = given["evidence"]["roots"][1]
+        root |= {"center": [str(int(root["center"][0]) + center)], "radius": "4"}
+        path.write_text(json.dumps(given), encoding="utf-8")
+        code, text = run(verifier, path)
+        assert code == 0
+        assert ("not verified here: that the saddle of 1 branch" in text) != known
+        assert valid(path) is not None
+    root["radius"] = "-1"
+    path.write_text(json.dumps(given), encoding="utf-8")
+    assert run(verifier, path)[0] == 3
+    assert valid(path) is None
+
+
+@pytest.mark.slow
+def test_the_last_corner_has_a_positive_saddle(verifier: Path, tmp_path: Path) -> None:
+    """A program that proposes another corner stops."""
+    place = tmp_path / "verify"
+    shutil.copytree(verifier.parent, place)
+    proposing = place / "proposing.ml"
+    text = proposing.read_text(encoding="utf-8")
+    assert text.count("    choose 1\n") == 1
+    proposing.write_text(text.replace("    choose 1\n", "    choose 2\n"), encoding="utf-8")
+    makefile = (verifier.parent.parent / "Makefile").read_text(encoding="utf-8")
+    files = re.findall(r"\w+\.mli?\b", makefile.partition("-linkpkg")[2].partition("-o")[0])
+    line = ["ocamlfind", "ocamlopt", "-w", "-a", "-package", "zarith", "-linkpkg"]
+    subprocess.run([*line, *files, "-o", "other"], cwd=place, check=True)
+    code, text = run(place / "other", CONVEX)
+    assert (code, "does not have a positive saddle" in text) == (70, True)
+    assert run(verifier, CONVEX)[0] == 0
+
+
+@pytest.mark.slow
+def test_no_vertex_at_which_a_letter_ends_is_not_mentioned(verifier: Path, tmp_path: Path) -> None:
+    given = json.loads(RANDOM.read_text(encoding="utf-8"))
+    given["claims"]["assignment"] = "U" * len(given["claims"]["assignment"])
+    path = tmp_path / "open.json"
+    path.write_text(json.dumps(given), encoding="utf-8")
+    code, text = run(verifier, path)
+    assert (code, "0 vertices" in text, "M and V" in text) == (0, False, False)
+    assert "By theorem one_verified" in text
 
 
 @pytest.mark.slow

@@ -4,19 +4,6 @@ open Reading
 open Sheets
 module V = Verified
 
-(* Whether the boundary saddle of heights is positive: their sum with the weights of the affine dependency of the
-   four boundary vertices. The vertex with the smallest number has a positive weight, or, if the others are in
-   line, both ends of this line. The order of the four does not matter. *)
-let positive_saddle sheet (a, b, c, d) h =
-  let turn x y z =
-    let (px, py), (qx, qy), (rx, ry) = sheet.points.(x), sheet.points.(y), sheet.points.(z) in
-    Z.sub (Z.mul (Z.sub qx px) (Z.sub ry py)) (Z.mul (Z.sub qy py) (Z.sub rx px)) in
-  let weights = [ (a, turn b c d); (b, Z.neg (turn a c d)); (c, turn a b d); (d, Z.neg (turn a b c)) ] in
-  let first = Z.sign (List.assoc (min (min a b) (min c d)) weights) in
-  let most = List.fold_left (fun n (_, w) -> n + Z.sign w) 0 weights in
-  let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
-  Z.sign sum * (if first <> 0 then first else most) > 0
-
 let continues proved theorem =
   if proved then Printf.printf "          It continues to one true motion, with the boundary at multiples of these heights,\n\
     \          by theorem %s.\n" theorem
@@ -36,6 +23,9 @@ let near_branch t claimed h text zeros (top, below) =
     ups.(v) <- (if Hashtbl.find claimed v = 0 then Z.gt side Z.zero else Hashtbl.find claimed v > 0)) p.V.hubs;
   let letters = letter_of 0 text in
   let up v = ups.(v) and given u = h.(u) in
+  let test letters = match corner with
+    | None -> V.passes p (fun _ -> false) up given letters
+    | Some r -> V.raised_passes d p r up given letters in
   if not (match corner with
     | None -> V.verify_one d p up given letters
     | Some r -> V.verify_one_notched d p r up given letters) then unverified "the branch did not pass the test";
@@ -43,19 +33,23 @@ let near_branch t claimed h text zeros (top, below) =
   List.iter (fun (b : V.hub) -> if Hashtbl.find claimed b.at_vertex = 0 then
     invalid "vertex %d has the sign 0, but a fold with a letter M or V" b.at_vertex) bent;
   let others = Array.length t.inside - List.length bent and flat = flats text in
+  refute_flat "the branch" p h flat test;
   Printf.printf "VERIFIED  exactly one %s lies in the closed nappes of %s.\n\
-    \          It has the letters M and V of the file, and the signs of the %s where they\n\
-    \          end. By theorem %s.\n"
+    \          %sBy theorem %s.\n"
     (if corner = None then "solution over these boundary heights" else "branch")
     (if zeros = 0 then "these signs" else "these signs,\n          at vertices with the sign 0 those of the heights")
-    (if List.length bent = 1 then "vertex" else plural (List.length bent) "vertex")
+    (match List.length bent with
+    | 0 when not (String.exists (fun c -> c = 'M' || c = 'V') text) -> ""
+    | 0 -> "It has the letters M and V of the file. "
+    | n -> Printf.sprintf "It has the letters M and V of the file, and the signs of the %s where they\n          end. "
+      (if n = 1 then "vertex" else plural n "vertex"))
     (if corner = None then "one_verified" else "one_notched_verified");
   Option.iter raised corner;
   let near = corner = None && V.within p up given top below in
   if near then print_string "          It has the squared distance of the file, by theorem distance_verified.\n";
   stay_flat t;
   continues (meaning_of t && others = 0) "one_continues";
-  if flat > 0 then not_verified (Printf.sprintf "%s F" (plural flat "letter"));
+  if flat <> [] then not_verified (Printf.sprintf "%s F" (plural (List.length flat) "letter"));
   if others > 0 then not_verified (Printf.sprintf "the signs of %s, where no such letter is" (plural others "other vertex"));
   if not near then not_verified "the squared distance"
 

@@ -3,6 +3,8 @@
 
 open Reading
 
+exception Unread of string  (* no drawing that is read here *)
+
 let wanted : string option ref = ref None
 
 let find key = function
@@ -18,7 +20,7 @@ let decimal = function
       | Some k ->
         let rest = String.sub t (k + 1) (String.length t - k - 1) in
         (String.sub t 0 k, match int_of_string_opt rest with
-          | Some n when abs n <= 4000 -> n
+          | Some n when n >= -4000 && n <= 4000 -> n
           | _ -> refuse "'%s' is no coordinate" t) in
     let whole, part = match String.split_on_char '.' mantissa with
       | [ whole ] -> (whole, "")
@@ -39,7 +41,8 @@ let placed key number data =
     | _ -> refuse "a vertex of the drawing is not in the plane" in
   Array.of_list (List.map point (items key (entry key data)))
 
-(* The decimals, or the exact fractions beside them, which may differ from them by roundings only. *)
+(* The decimals, or the exact fractions beside them, which may differ from them by roundings only: by 10^-9 of the extent
+   of the drawing, and 2^-50 of the coordinate. *)
 let points data =
   if find "vertices_exactfold:surds" data <> None then refuse "the drawing has square roots in its coordinates";
   let decimals = placed "vertices_coords" decimal data in
@@ -47,8 +50,11 @@ let points data =
     let exact = placed "vertices_exactfold:coords" (rational "a coordinate") data in
     if Array.length exact <> Array.length decimals then refuse "the drawing has exact coordinates of other vertices";
     let q (p, below) = Q.make p below in
-    let size = Array.fold_left (fun n (x, y) -> Q.max n (Q.max (Q.abs (q x)) (Q.abs (q y)))) Q.zero decimals in
-    let far a b = Q.gt (Q.mul (Q.abs (Q.sub (q a) (q b))) (Q.of_int 1_000_000_000)) size in
+    let extent part =
+      let all = List.map (fun v -> q (part v)) (Array.to_list decimals) in
+      let most pick = List.fold_left pick (List.hd all) all in Q.sub (most Q.max) (most Q.min) in
+    let size = if decimals = [||] then Q.zero else Q.div (Q.max (extent fst) (extent snd)) (Q.of_int 1_000_000_000) in
+    let far a b = Q.gt (Q.abs (Q.sub (q a) (q b))) (Q.add size (Q.div_2exp (Q.abs (q b)) 50)) in
     Array.iteri (fun v (x, y) -> let a, b = decimals.(v) in
       if far x a || far y b then refuse "vertex %d of the drawing has two different places, exact and in decimals" v) exact;
     exact
@@ -61,16 +67,21 @@ let faces data =
 
 let unordered (a, b, c) = List.sort compare [ a; b; c ]
 
+let read path =
+  let text = file path in
+  let mark = if String.starts_with ~prefix:"\xef\xbb\xbf" text then 3 else 0 in
+  let data = parse ~drawing:true (String.sub text mark (String.length text - mark)) in
+  (points data, faces data)
+
 (* Says that a sheet is that of the drawing, if one was named. *)
 let compare_with (sheet : sheet) = match !wanted with
   | None -> ()
   | Some path ->
-    let data = parse ~drawing:true (file path) in
-    let points = points data in
+    let points, faces = try read path with Refused why | Sys_error why -> raise (Unread why) in
     if Array.length points <> Array.length sheet.exact then
       invalid "the drawing has %d vertices, the certificate %d" (Array.length points) (Array.length sheet.exact);
     Array.iteri (fun v point -> if point <> sheet.exact.(v) then
       invalid "vertex %d of the drawing is not at its place in the certificate" v) points;
     let set list = List.sort compare (List.map unordered list) in
-    if set (faces data) <> set sheet.triangles then invalid "the faces of the drawing are not those of the certificate";
+    if set faces <> set sheet.triangles then invalid "the faces of the drawing are not those of the certificate";
     Printf.printf "drawing   %s has these vertices and faces\n%!" path

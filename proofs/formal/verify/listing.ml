@@ -26,25 +26,27 @@ let passes t root = match t.corner with
   | Some r -> V.reflex_ok t.d t.p r t.parts (List.hd t.d.border) root
 
 (* The sides from which the claims may be seen: with a reflex corner the test is of the side on which it pops up, where
-   its height has the sign of [rise]; seen from the other side signs and letters are reversed. *)
+   its height has the sign of [rise]; seen from the other side signs and letters are reversed. If the file says that the
+   saddle is 0 or not known, the second ones, where it is known, refute this. *)
 let sides t saddle = match t.corner with
-  | None -> [ (true, None) ]
-  | Some r when saddle ->
+  | None -> ([ (true, None) ], [])
+  | Some r ->
     let up = Array.mapi (fun v _ -> if v = r then Z.one else Z.zero) t.file.points in
     let rise = match t.d.border with
-      | [ a; b; c ] -> Branch.positive_saddle t.file (r, a, b, c) up
+      | [ a; b; c ] -> positive_saddle t.file (r, a, b, c) up
       | _ -> refuse "the sheet has not four corners" in
-    [ (true, Some (Some rise)); (false, Some (Some (not rise))) ]
-  | Some _ -> [ (true, None); (false, None) ]
+    let shown = [ (true, Some (Some rise)); (false, Some (Some (not rise))) ] in
+    if saddle then (shown, []) else
+      ([ (true, Some None); (false, Some None); (true, None); (false, None) ], shown @ List.map (fun (s, r) -> (not s, r)) shown)
 
-(* The branches with evidence that is found for them, and how many letters F it does not decide. *)
+(* The branches with evidence that is found for them, and how many letters F, and saddles, it does not decide. *)
 let roots_of t chart classes entries =
   let { d; p; inside; _ } = t in
   let slot = Array.make (Array.length t.file.points) (-1) in
   List.iteri (fun k v -> slot.(v) <- k) d.inside;
   let lights = Array.of_list (List.map (Proposing.light slot) p.V.hubs) in
   let chart = Spaces.chart_of d p inside t.corner chart in
-  let undecided = ref 0 in
+  let undecided = ref 0 and unknown = ref 0 in
   let root number (j, branch) =
     let claimed, text, saddle, times = claimed_of t number branch in
     let flat = List.filter (fun v -> Hashtbl.find claimed v = 0) (Array.to_list inside) in
@@ -58,9 +60,12 @@ let roots_of t chart classes entries =
         { V.signs_of; letters_of = letters decided; times; top; rise; found } in
       Option.map made
         (Spaces.evidence d lights chart flat (fun k -> text.[k] = 'F') near (fun e -> passes t (made e))) in
-    match List.find_map seen (sides t saddle) with
+    let possible, refuting = sides t saddle in
+    if Option.is_some (List.find_map seen refuting) then invalid "branch %d: its positive saddle is shown, not \"either\"" number;
+    match List.find_map seen possible with
     | None -> unverified "branch %d did not pass the test" number
     | Some root ->
+      if t.corner <> None && root.rise = None then incr unknown;
       String.iteri (fun k c -> if c = 'F' && root.letters_of k = None then begin
         incr undecided;
         let bent w = passes t { root with letters_of = fun f -> if f = k then Some (Some w) else root.letters_of f } in
@@ -68,7 +73,7 @@ let roots_of t chart classes entries =
       end) text;
       root in
   let roots = List.mapi root entries in
-  (roots, !undecided)
+  (roots, !undecided, !unknown)
 
 (* The sheet of a listing, and the classes in its evidence. *)
 let opened header evidence =
@@ -92,7 +97,7 @@ let all_roots header entries claims =
   shown_sheet t;
   check_sheet t;
   check_claims t claims (string_of_int (List.length entries));
-  let roots, undecided = roots_of t (entry "chart" (entry "evidence" header)) classes entries in
+  let roots, undecided, unknown = roots_of t (entry "chart" (entry "evidence" header)) classes entries in
   let common = List.map (fun (a, b, c) -> ((a, b), c)) t.common in
   if not (match t.corner with
     | None -> V.verify_listed d p common parts roots
@@ -101,13 +106,19 @@ let all_roots header entries claims =
   let continued = string "true_branches" (entry "true_branches" claims) in
   agrees "true_branches" continued (if simple then "proved" else "undecided");
   Printf.printf "VERIFIED  exactly %s to second order, complex ones included; all are real and different.\n\
-    \          They have the signs, flat vertices and letters M and V of the file. Each sign vector agrees with one;\n\
+    \          They have the signs, flat vertices and letters M and V of the file. %s agrees with one;\n\
     \          the multiplicity of the file is how many agree with a branch. By theorem %s.\n"
-    (plural (List.length roots) "branch") (if t.corner = None then "listed_verified" else "reflex_verified");
-  if t.corner <> None then print_string "          Where the file says \"either\" this holds of one of the two sides.\n";
+    (plural (List.length roots) "branch")
+    (match t.corner with
+    | None -> "Each sign vector"
+    | Some r -> Printf.sprintf "Seen from the side on which\n\
+      \          vertex %d pops up when a triangle closes the notch, each sign vector" r)
+    (if t.corner = None then "listed_verified" else "reflex_verified");
+  if t.corner <> None then print_string "          The file shows a branch from the side with the positive saddle, or, with \"either\", from one of both.\n";
   stay_flat t;
   let continue = meaning_of t && simple && t.corner = None in
   if continue then all_continue "listed_continue";
+  if unknown > 0 then not_verified (Printf.sprintf "that the saddle of %s is not known" (plural unknown "branch"));
   if undecided > 0 then not_verified (Printf.sprintf "%s F" (plural undecided "letter"));
   if simple && not continue then not_verified "that every branch continues to a true motion"
 

@@ -13,8 +13,8 @@ let usage = "usage: exactfold-verify FILE [DRAWING.fold]\n\n\
 
 (* --- all branches --- *)
 
-(* [flat] is the number of letters F, of which the formal proof says nothing. *)
-type root = { bits : int; center : Z.t array; letters : int -> bool option; flat : int }
+(* [flat] are the folds with the letter F, of which the formal proof says nothing. *)
+type root = { bits : int; center : Z.t array; letters : int -> bool option; flat : int list }
 
 let signed bytes at width =
   let negative = Char.code (Bytes.get bytes (at + width - 1)) > 127 in
@@ -36,7 +36,7 @@ let block size folds number length data =
   let read e =
     only "root bits radius center assignment" e;
     let index = small ~most:(length - 1) "root" (entry "root" e) and text = string "assignment" (entry "assignment" e) in
-    ignore (whole "radius" (entry "radius" e));
+    ignore (positive "radius" (entry "radius" e));
     if String.length text <> folds then refuse "root %d has another number of letters" index;
     let center = Array.of_list (List.map (whole "center") (items "center" (entry "center" e))) in
     if Array.length center <> size then refuse "root %d has another number of heights" index;
@@ -49,7 +49,7 @@ let block size folds number length data =
     | [ (_, root) ], true -> root
     | [], false ->
       for k = folds to (8 * row) - 1 do if bit index k then refuse "a bit of no fold is set" done;
-      { bits; flat = 0; center = Array.init size (fun k -> signed centers (((index * size) + k) * width) width);
+      { bits; flat = []; center = Array.init size (fun k -> signed centers (((index * size) + k) * width) width);
         letters = fun k -> Some (bit index k) }
     | _ -> invalid "root %d of block %d is given twice or not at all" index number
 
@@ -135,7 +135,8 @@ let all_branches header blocks claims =
         let h = Proposing.refined lights rough corner careful (fun h -> passes e h root.letters) (heights root) in
         let done_ = (1 lsl size) - n in
         if done_ land 4095 = 0 && size > 13 then Printf.eprintf "\r%d of %d roots%!" done_ (1 lsl size);
-        flat := !flat + root.flat;
+        refute_flat (Printf.sprintf "root %d" n) p h root.flat (passes e h);
+        flat := !flat + List.length root.flat;
         proposed := (n, h, root.letters)
       end in
     let top e = propose e; let _, h, _ = !proposed in h.(List.nth d.border 3) in
@@ -206,12 +207,13 @@ let verify path =
   end
 
 let main path =
-  let fail code format = Printf.ksprintf (fun why ->
-    Printf.eprintf "exactfold-verify: %s: %s\n" Sys.argv.(1) why; exit code) format in
+  let fail ?(name = path) code format = Printf.ksprintf (fun why ->
+    Printf.eprintf "exactfold-verify: %s: %s\n" name why; exit code) format in
   try verify path; flush stdout with
     | Invalid why -> Printf.printf "INVALID   %s\n" why; exit 1
     | Unverified why -> Printf.printf "NOT VERIFIED  %s\n" why; exit 1
     | Refused why -> fail 3 "%s" why
+    | Drawing.Unread why -> fail ~name:(Option.get !Drawing.wanted) 3 "%s" why
     | Stack_overflow -> fail 70 "the stack is too small for this file: run `ulimit -s unlimited` first"
     | Sys_error why -> fail 3 "%s" why
     | error -> fail 70 "nothing is known of this file: %s" (Printexc.to_string error)

@@ -47,7 +47,8 @@ let parse ?(drawing = false) s =
     match peek () with
     | '"' -> Text (text ())
     | '[' -> Items (sequence ']' value)
-    | '{' -> Entries (sequence '}' (fun () -> let key = text () in expect ':'; (key, value ())))
+    | '{' -> Entries (sequence '}' (fun () -> let key = text () in
+      if String.contains key '\\' then refuse "escapes in keys are not read"; expect ':'; (key, value ())))
     | _ ->
       let first = !at in
       while !at < size && not (String.contains ",]} \t\n\r" s.[!at]) do incr at done;
@@ -85,6 +86,7 @@ let digits what t =
   if good then Z.of_string t else refuse "%s is no whole number" what
 
 let whole what = function Text t -> digits what t | _ -> refuse "%s is no whole number" what
+let positive what j = let n = whole what j in if Z.sign n > 0 then n else refuse "%s is not positive" what
 
 (* A number that stands without quotes, between two limits. *)
 let small ?(least = 0) ?(most = max_int / 4) what = function
@@ -94,7 +96,7 @@ let small ?(least = 0) ?(most = max_int / 4) what = function
   | _ -> refuse "%s is no number" what
 
 let rational what = function
-  | Text t | Number t -> (match String.split_on_char '/' t with
+  | Text t -> (match String.split_on_char '/' t with
     | [ p ] -> (digits what p, Z.one)
     | [ p; q ] when Z.gt (digits what q) Z.zero ->
       let p = digits what p and q = digits what q in
@@ -107,8 +109,7 @@ let rational what = function
 type sheet = { exact : ((Z.t * Z.t) * (Z.t * Z.t)) array; points : (Z.t * Z.t) array; triangles : (int * int * int) list; digest : string }
 
 let triple what = function
-  | [ a; b; c ] -> (small what a, small what b, small what c)
-  | _ -> refuse "%s has not three vertices" what
+  | [ a; b; c ] -> (small what a, small what b, small what c) | _ -> refuse "%s has not three vertices" what
 
 let sheet pattern =
   only "vertices triangles" pattern;

@@ -27,6 +27,19 @@ let triangulated sheet multipliers j =
   | [ a; b; c ], inside -> ((a, b, c), List.map vertex inside)
   | _ -> refuse "a triangle has not three corners"
 
+(* Whether the boundary saddle of heights is positive: their sum with the weights of the affine dependency of the
+   four boundary vertices. The vertex with the smallest number has a positive weight, or, if the others are in
+   line, both ends of this line. The order of the four does not matter. *)
+let positive_saddle sheet (a, b, c, d) h =
+  let turn x y z =
+    let (px, py), (qx, qy), (rx, ry) = sheet.points.(x), sheet.points.(y), sheet.points.(z) in
+    Z.sub (Z.mul (Z.sub qx px) (Z.sub ry py)) (Z.mul (Z.sub qy py) (Z.sub rx px)) in
+  let weights = [ (a, turn b c d); (b, Z.neg (turn a c d)); (c, turn a b d); (d, Z.neg (turn a b c)) ] in
+  let first = Z.sign (List.assoc (min (min a b) (min c d)) weights) in
+  let most = List.fold_left (fun n (_, w) -> n + Z.sign w) 0 weights in
+  let sum = List.fold_left (fun s (v, w) -> Z.add s (Z.mul w h.(v))) Z.zero weights in
+  Z.sign sum * (if first <> 0 then first else most) > 0
+
 let place_of file triangles =
   let thin, hidden, common, parts = Proposing.emptied file triangles in
   let closed, corner = Proposing.closed thin hidden in
@@ -41,6 +54,12 @@ let place_of file triangles =
       <> List.sort compare (List.map pair file.triangles)
     || List.map (fun (f : V.fold_form) -> (f.name, f.ends)) p.folds <> numbered
   then failwith "the sheet that is proposed is not that of the file";
+  (match d.border, corner with
+  | [ w; x; y; z ], None ->
+    (* the branches of a convex sheet are those with the height 1 at the last corner, 0 at the others *)
+    if not (positive_saddle file (w, x, y, z) (Array.init (Array.length file.points) (fun v -> if v = z then Z.one else Z.zero)))
+    then failwith "the last corner that is proposed does not have a positive saddle"
+  | _ -> ());
   { file; thin; d; p; corner; hidden = List.concat_map snd triangles; common; parts;
     inside = Array.of_list (List.rev inside); rim = List.length d.border + List.length d.inside - List.length inside }
 
@@ -83,7 +102,15 @@ let all_continue theorem = Printf.printf "          Near the flat sheet each bra
 let raised r = Printf.printf "          Signs and letters are those of the side on which vertex %d pops up when a triangle\n\
   \          closes the notch.\n" r
 
-let flats text = String.fold_left (fun n c -> if c = 'F' then n + 1 else n) 0 text
+let flats text = List.filter (fun k -> text.[k] = 'F') (List.init (String.length text) Fun.id)
+
+(* A letter F is refuted if the test passes with the letter of the heights in its place, and no others. *)
+let refute_flat what (p : V.prepared) h flat passes =
+  let own = Array.of_list (if flat = [] then [] else p.folds) in
+  List.iter (fun k ->
+    let bend = Z.sign (V.bent (fun u -> h.(u)) own.(k)) and ((i, j), _), _ = own.(k).ends in
+    if bend <> 0 && passes (fun f -> if f = k then Some (bend > 0) else None) then
+      invalid "%s: the fold %d, %d has the letter F and is not flat" what i j) flat
 
 let letter_of root text k = match text.[k] with
   | 'M' -> Some false

@@ -141,7 +141,7 @@ let rec narrowed f low high steps =
 
 let centre size j =
   let bits = small ~most:(1 lsl 14) "bits" (entry "bits" j) in
-  ignore (whole "radius" (entry "radius" j));
+  ignore (positive "radius" (entry "radius" j));
   let given = List.map (whole "center") (items "center" (entry "center" j)) in
   if List.length given <> size then refuse "a root has another number of heights";
   Array.of_list (List.map (fun c -> Q.make c (Z.shift_left Z.one bits)) given)
@@ -237,7 +237,7 @@ let rec place v k = function [] -> 0 | w :: l -> if w = v then k else place v (k
 let with_constant (origin, directions) xs =
   let rows = echelon (Array.length xs) (origin :: directions) in
   let larger (k, r) (j, r') = if Q.lt (Q.abs xs.(k)) (Q.abs xs.(j)) then (j, r') else (k, r) in
-  let k, row = List.fold_left larger (List.hd rows) rows in
+  let k, row = if rows = [] then refuse "the space has no heights but 0" else List.fold_left larger (List.hd rows) rows in
   let times = Q.abs xs.(k) in
   if Q.sign times = 0 then refuse "all heights are 0";
   let signed x = if Q.sign xs.(k) < 0 then Q.neg x else x in
