@@ -114,7 +114,7 @@ let all_roots header entries claims =
     | Some r -> Printf.sprintf "Seen from the side on which\n\
       \          vertex %d pops up when a triangle closes the notch, each sign vector" r)
     (if t.corner = None then "listed_verified" else "reflex_verified");
-  if t.corner <> None then print_string "          The file shows a branch from the side with the positive saddle, or, with \"either\", from one of both.\n";
+  if t.corner <> None then print_string "          The file shows a branch from the side with the positive saddle; \"either\": from one of both.\n";
   stay_flat t;
   let continue = meaning_of t && simple && t.corner = None in
   if continue then all_continue "listed_continue";

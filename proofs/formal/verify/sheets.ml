@@ -57,8 +57,8 @@ let place_of file triangles =
   (match d.border, corner with
   | [ w; x; y; z ], None ->
     (* the branches of a convex sheet are those with the height 1 at the last corner, 0 at the others *)
-    if not (positive_saddle file (w, x, y, z) (Array.init (Array.length file.points) (fun v -> if v = z then Z.one else Z.zero)))
-    then failwith "the last corner that is proposed does not have a positive saddle"
+    let unit = Array.mapi (fun v _ -> if v = z then Z.one else Z.zero) file.points in
+    if not (positive_saddle file (w, x, y, z) unit) then failwith "the last corner that is proposed does not have a positive saddle"
   | _ -> ());
   { file; thin; d; p; corner; hidden = List.concat_map snd triangles; common; parts;
     inside = Array.of_list (List.rev inside); rim = List.length d.border + List.length d.inside - List.length inside }
