@@ -144,18 +144,10 @@ class FlatPatch:
         bits = max(bits, framework.bits)
         start = np.rint(near[list(self.places)] * 2.0**60)
         z = np.array([int(x) << (bits - 60) for x in start], dtype=object).reshape(-1, 3)
-        p, close = None, False
-        for _ in range(_NEWTON):
-            if not close:  # near the solution, the same matrix will do
-                p = self._inverse(z, bits)
-            if p is None:
-                return None
-            step = (p @ self._stretch(z, bits)) >> (_MATRIX_BITS + bits + 1)
-            z = z - step.reshape(-1, 3)
-            largest = int(max(abs(step)))
-            if largest <= 1:
-                break
-            close = largest << _CLOSE < 1 << bits
+        solved = self._solved(z, bits)
+        if solved is None:
+            return None
+        z, p = solved
         # The rounding error of each residual is less than one unit.
         residual = int(max(abs(p @ self._stretch(z, bits)) + abs(p).sum(axis=1)))
         jacobian = self._jacobian(z, bits)
@@ -181,6 +173,21 @@ class FlatPatch:
                 radii.append(-(-reach // self._denominator) + 1)
         ball = Ball(bits, tuple(centre), tuple(radii))
         return FlatPoint(self, ball, tuple(int(x) for x in z.reshape(-1)), proof.uniqueness(ONE))
+
+    def _solved(self, z: BigArray, bits: int) -> tuple[BigArray, BigArray] | None:
+        """The end of Newton's method from z, and the last approximate inverse."""
+        p = self._inverse(z, bits)
+        for _ in range(_NEWTON):
+            if p is None:
+                return None
+            step = (p @ self._stretch(z, bits)) >> (_MATRIX_BITS + bits + 1)
+            z = z - step.reshape(-1, 3)
+            largest = int(max(abs(step)))
+            if largest <= 1:
+                break
+            if largest << _CLOSE >= 1 << bits:  # near the solution, the same matrix will do
+                p = self._inverse(z, bits)
+        return None if p is None else (z, p)
 
     def _inverse(self, z: BigArray, bits: int) -> BigArray | None:
         """An approximate inverse of the Jacobian, over 2^_MATRIX_BITS; None if it is singular."""
