@@ -7,7 +7,7 @@ let () =
   let data = Reading.(parse (file Sys.argv.(1))) in
   let t, classes = Listing.opened data (Reading.entry "evidence" data) in
   let chart = Reading.(entry "chart" (entry "evidence" data)) in
-  let roots, _ = Listing.roots_of t chart classes (Listing.in_object data) in
+  let roots, _, _ = Listing.roots_of t chart classes (Listing.in_object data) in
   let passes = Listing.passes t in
   let refused = ref 0 and spaces = ref 0 in
   let more = Z.add Z.one and less = Z.pred in
